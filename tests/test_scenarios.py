@@ -10,6 +10,7 @@ from scipy.special import ellipk
 
 from trsim.scenario.load import load
 from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, EVENT_WORK, USER
+from trsim.solve.sizing import sized
 from trsim.statuses import WELL
 
 from .runs import energy_error, run
@@ -427,3 +428,34 @@ def test_a_door_is_jettisoned():
     )
     parked = (r.t > 2.0) & (r.t < times[-1])
     assert np.ptp(r["arm.position"][parked], axis=0) == pytest.approx(0, abs=1e-9)
+
+
+def test_static_latch():
+    """By the sign of the travel, and the strike behind 20 mm."""
+    r = run(load(VALIDATION / "static_latch.yaml", ["output.channels=['*']"]))
+    x, onward = 0.025 * (1 - np.abs(2 * r.t - 1)), np.where(r.t <= 0.5, 1.0, -1.0)
+    force = 200 * x + 0.2 * 2 * 9.81 * onward + 1e5 * np.maximum(x - 0.02, 0)
+    assert r["handle.force"] == pytest.approx(force, abs=1e-7)
+    told = [(round(t, 9), kind) for t, kind in r.events[:, :2].tolist()]
+    assert told == [(0.4, 1), (0.5, 8), (0.6, 2)]
+
+
+def test_static_truss():
+    r = run(load(VALIDATION / "static_truss.yaml"))
+    height = np.sqrt(np.hypot(1, 0.3) ** (2 / 3) - 1)
+    most = 2000 * (np.hypot(1, 0.3) / np.hypot(1, height) - 1) * height
+    assert (height, most) == pytest.approx((0.170712, 9.949917), abs=1e-6)
+    assert 20 * r.outcome.time == pytest.approx(most, rel=1e-8)
+    assert 0.3 + r["down"][-1] == pytest.approx(height, abs=1e-6)
+
+
+def test_handle_sizing():
+    found = sized(load(VALIDATION / "handle_sizing.yaml"))
+    assert found.relative[-1] < 1e-9 and len(found.left) == 5
+
+    def left(F):
+        return 0.4 * F - 0.4 * 9.81 - 0.009 * np.abs(2 * 9.81 - F)
+
+    assert found.x[0] == pytest.approx(0, abs=1e-12)
+    assert found.load[0] == pytest.approx(brentq(left, 0, 50), rel=1e-8)
+    assert found.load[0] == pytest.approx(10.025868, abs=1e-6)

@@ -352,6 +352,18 @@ ENDINGS = {
     "slack": RESTS + "phases: [{drive: {}, taut: [rope]}]",
     "released": RESTS + "phases: [{release: [hinge], for: 0.1 s}]",
 }
+# pressed down by more than its springs carry: they snap through
+TURNS_BACK = """
+planar: true
+bodies:
+  top: {mass: 1 kg, inertia: 0.01 kg*m^2, at: [0, 0.3]}
+joints:
+  guide: {type: prismatic, bodies: [ground, top], axis: [0, 1]}
+forces:
+  left: {type: spring_damper, bodies: [ground, top], points: [[-1, 0], [0, 0.3]], stiffness: 1000}
+  load: {type: applied_load, body: top, direction: [0, -1], force: "20*t"}
+solver: {method: static_path, end: 1 s}
+"""
 
 
 def of_every_status(folder, monkeypatch):
@@ -372,6 +384,7 @@ def of_every_status(folder, monkeypatch):
         write(folder / "y.h5", scenario, mechanism, blocks(True))
     small.run(folder / "failed.h5", text=small.SLIDER_CRANK.replace(*WRONG[5]))
     small.run(folder / "jammed.h5", text=JAMS)
+    small.run(folder / "limit.h5", text=TURNS_BACK)
     small.run(folder / "leaps.h5", text=LEAPS)
     for status, text in ENDINGS.items():
         small.run(folder / f"{status}.h5", text=text)
@@ -379,6 +392,7 @@ def of_every_status(folder, monkeypatch):
         **{status: f"{status}.h5" for status in ENDINGS},
         "done": "x.h5",
         "jammed": "jammed.h5",
+        "limit": "limit.h5",
         "painleve": "leaps.h5",
         "failed": "failed.h5",
         "interrupted": "y.h5.part",

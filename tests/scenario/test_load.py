@@ -209,7 +209,7 @@ solver: {end: 1}
             "{end: 1}",
             "{end: 1, method: rk5}",
             "a.yaml:12:26: solver.method: must be one of auto, dop853, radau, generalized_alpha,"
-            " rk4, kinematic, scipy:BDF, scipy:Radau, scipy:RK45, got 'rk5'\n"
+            " rk4, kinematic, static_path, scipy:BDF, scipy:Radau, scipy:RK45, got 'rk5'\n"
             "    solver: {end: 1, method: rk5}\n"
             "                             ^\n"
             "  Did you mean 'rk4'?",

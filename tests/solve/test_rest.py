@@ -249,3 +249,12 @@ gravity: [0, -9.81, 0]
     assert channel(found, "pin.contact_force") == pytest.approx(2 * G, rel=1e-6)
     assert channel(found, "rod.position")[1] == pytest.approx(-0.2005 - depth, abs=1e-9)
     assert found.found.verdict == "stable" and found.found.freedoms == 3
+
+
+def test_on_a_cam():
+    """The place along a curve is no coordinate that could be held; the torque is m g dh/da."""
+    found = at_rest(load(VALIDATION / "cam_roller.yaml"))
+    assert found.found.verdict == "stable" and found.found.freedoms == 0
+    column = next(c for c in found.mechanism.columns if c.name == "motor.force")
+    # h = e sin a + sqrt((a + r)^2 - (e cos a)^2) at a = 0
+    assert found.channels[column.start] == pytest.approx(0.5 * 9.81 * 0.015, abs=1e-9)

@@ -173,11 +173,12 @@ def check(name: str, there: Any, kind: str, path: tuple) -> None:
 def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switches:
     """The events of a scenario.  Raises ScenarioError for names and units that do not fit."""
     method, limited = scenario.solver.method, limits(instances)
-    if not METHODS[method].marches:  # it looks itself at what makes a run fail
+    follows = METHODS[method].marches or METHODS[method].rests
+    if not follows:  # it looks itself at what makes a run fail
         limited = tuple(event for event in limited if event.status != "failed")
     if not scenario.events and not limited:
         return Switches()
-    if not METHODS[method].marches:
+    if not follows:
         what = f"{method} knows no events: it keeps a state of its own"
         hint = f"take one of {', '.join(name for name in METHODS if METHODS[name].marches)}"
         raise ScenarioError(what, hint, ("solver", "method"))

@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from trsim.cli.frame import Answer, Stop
+from trsim.cli.given import NO_MOTION
 from trsim.cli.running import Wanted, look, placed, ran
 from trsim.cli.source import loaded
 from trsim.errors import FileError, TrsimError, UsageError, some
+from trsim.scenario.methods import METHODS
 
 BRIEF, REST = ("windows", "contacts"), ("curves", "quantities", "levels", "onsets")  # tables
 SHOWN = 3  # windows in a message
@@ -27,6 +29,8 @@ def twin(answer: Answer, source: str, target: Path, scenario: Any, wanted: Wante
     from trsim.store.checkpoint import beside as kept
     from trsim.store.checkpoint import keys
 
+    if METHODS[scenario.solver.method].rests:
+        raise UsageError(NO_MOTION, "Compare it with a slow motion: `trsim run` without `method`.")
     path = beside(target)
     other = other_scenario(answer, source, scenario, wanted)
     known = json.dumps(keys(other), sort_keys=True)

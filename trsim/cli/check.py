@@ -143,6 +143,7 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     from trsim.solve.diagnose.mesh_error import mesh_errors
     from trsim.solve.diagnose.modes import modes
     from trsim.solve.diagnose.scales import scales
+    from trsim.solve.path.begin import check as check_path
     from trsim.solve.simulate import check_step
     from trsim.solve.start.consistent import start
     from trsim.solve.start.driven import check_driven
@@ -154,6 +155,8 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
         scenario = scenario.model_copy(update={"solver": solver})
     if METHODS[scenario.solver.method].driven:
         check_driven(scenario, mechanism)
+    if METHODS[scenario.solver.method].rests:
+        check_path(scenario, mechanism)
     at = start(scenario, mechanism, located=True)
     of_start = scales(scenario, mechanism, at)
     check_step(scenario, of_start)

@@ -5,10 +5,14 @@ from typing import Any
 from trsim.errors import ScenarioError, UsageError, known
 from trsim.scenario.methods import METHODS
 
+NO_MOTION = "a static path is no motion, which another method could check"
+
 
 def known_method(name: str) -> str:
     if name.strip() not in METHODS:
         raise UsageError(f"no method '{name}'", known(name, METHODS))
+    if METHODS[name.strip()].rests:
+        raise UsageError(NO_MOTION, "Name a method that computes motions.")
     return name.strip()
 
 

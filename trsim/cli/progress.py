@@ -26,7 +26,9 @@ def compiling(answer: Answer, method: str = "") -> None:
     from trsim.assemble.equations import derivative
 
     needed, later = derivative, []
-    if method:
+    if method and METHODS[method].rests:
+        from trsim.solve.path.balance import system as needed
+    elif method:
         # the largest first; the first process comes to the rest before it needs an implicit method
         files = METHODS[method].files.get(INDEX_1, ("scipy_ivp",))
         later = ["march.complete", *(f"methods.{name}" for name in reversed(files)), "march.loop"]

@@ -87,12 +87,18 @@ def one(answer: Answer, source: str, target: Path, wanted: Wanted) -> dict[str, 
     if scenario.solver.end is None:
         what = "field required: end (s)"
         raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
-    closing = None
+    closing, passes = None, None
+    if scenario.sizing is not None:
+        from trsim.cli.sizing import found
+
+        scenario, passes, closing = found(answer, source, target, scenario, wanted)
     if wanted.certify:
         from trsim.cli.certify import twin
 
         closing = twin(answer, source, target, scenario, wanted)
     summary = ran(answer, source, target, scenario, wanted, closing)
+    if passes is not None:
+        summary["sizing"] = passes
     answer.say(line(summary))
     remark(answer, source, summary)
     if "certificate" in summary:
@@ -108,6 +114,13 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
         answer.warn(source, text)
     if summary["redundant"]:
         answer.say(f"{source}: {redundancy(summary)}")
+    numbers = summary["statistics"]
+    if "inertia_ratio" in numbers:
+        at = f"at t = {numbers['inertia_ratio_time']:.6g} s"
+        answer.say(
+            f"{source}: inertia ratio {numbers['inertia_ratio']:.3g} {at}: so much of the largest "
+            "force of a drive would inertia change"
+        )
     for name, times in summary["fired"].items():
         if times == 0 and summary["status"] == "done":
             answer.say(f"{source}: note: the event '{name}' never happened")

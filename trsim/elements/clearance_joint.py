@@ -295,6 +295,7 @@ ELEMENT = Element(
     ideal="revolute",
     picture="journal",
     loads={"contact_force": "contact force"},
+    slides=(Own.columns["friction_law"].at, Own.columns["friction"].at),
     kernels={
         "constraint": constraint_of(ROWS),
         "coordinate": coordinate_of(("angle",), len(ROWS)),

@@ -323,6 +323,8 @@ class Element:
     springs: Callable[[Row], Springs] | None = None  # what they hold is at rest at the start
     elastic: tuple[int, ...] = ()  # columns of par its elastic forces are proportional to
     viscous: tuple[int, ...] = ()  # and those of its material's damping
+    # of what rubs: the columns of con and of par with the law, and with the first of its numbers
+    slides: tuple[int, int] | None = None
     dear: bool = False  # no joint is released to it where another choice does as well
     sways: bool = False  # of a joint about a point: which turns it leaves is a rotation vector
     meets: bool = False  # its bodies meet at the point `at`

@@ -521,6 +521,7 @@ ELEMENT = Element(
         Channel("sliding_speed", "m/s", "of the second body against the first, where it rubs"),
     ),
     loads={"force": "force"},
+    slides=(Own.columns["law"].at, Own.columns["friction"].at),
     kernels={"load": load, "rub": rub, "measure": measure},
     example="""
 bodies:

@@ -24,6 +24,8 @@ class Method(NamedTuple):
     twin      the method that a run is certified by: another family, other errors
     driven    only where drives and joints leave nothing free: places are found, not integrated, at
               every output row
+    rests     at every place forces balance without inertia: followed along t, not integrated; its
+              steps are made by solve/path
     """
 
     order: int
@@ -32,6 +34,7 @@ class Method(NamedTuple):
     explicit: bool = False
     twin: str = "auto"
     driven: bool = False
+    rests: bool = False
 
     @property
     def control(self) -> str:
@@ -58,6 +61,7 @@ METHODS = {
     "generalized_alpha": Method(2, {INDEX_1: ("generalized_alpha",)}),
     "rk4": Method(4, {INDEX_1: ("rk4",)}, adaptive=False, explicit=True),
     "kinematic": Method(4, {INDEX_1: ("kinematic",)}, explicit=True, driven=True),
+    "static_path": Method(2, {}, rests=True),
     "scipy:BDF": Method(5, {}),
     "scipy:Radau": Method(5, {}),
     "scipy:RK45": Method(5, {}, explicit=True),

@@ -25,6 +25,7 @@ from trsim.scenario.load_sets import Level, LoadSet, scaled
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
 from trsim.scenario.phases import Phase, driven_first, events_of, resting
 from trsim.scenario.sections import PhasePortrait, PoincareSection
+from trsim.scenario.sizing import Sizing
 from trsim.scenario.template import Instance, Placement, Template
 from trsim.scenario.text import Tree
 from trsim.scenario.totals import Total
@@ -123,7 +124,8 @@ class SolverSpec(Spec):
 
     method         auto takes dop853 and, where the motion is stiff, radau; generalized_alpha is for
                    two or three digits of stiff motion; rk4 has fixed steps; kinematic is
-                   for mechanisms driven in all their freedoms; scipy's are independent checks
+                   for mechanisms driven in all their freedoms; static_path balances forces at
+                   each place, without inertia; scipy's are independent checks
     formulation    equations that radau solves: index1 with projection, or for many bodies ggl, the
                    stabilised index 2 with sparse matrices; found out unless given
     end            time at which the run ends, at least 1e-20 s; needed by `run`, not by `check`
@@ -234,6 +236,7 @@ class Scenario(Spec):
     load_sets        loads that act together, with factors of limit and ultimate load
     loads            which load sets act: `{gust: ultimate}`, limit, ultimate or a factor
     totals           what several bodies weigh together, where one of them takes the rest
+    sizing           a load that takes over what a drive gives, found by repeated runs
     limits           how many bodies, rows, nodes and entries there may be
     phases           load steps in their order: what is driven, locked and let go in each, and what
                      ends it
@@ -265,6 +268,7 @@ class Scenario(Spec):
     load_sets: dict[str, LoadSet] = EMPTY
     loads: dict[str, Level] | None = None
     totals: dict[str, Annotated[Total, _Scoped(Total)]] = EMPTY
+    sizing: Sizing | None = None
     limits: Limits = Limits()
     phases: tuple[Phase, ...] = ()
     cases: dict[str, Any] = EMPTY

@@ -56,6 +56,7 @@ class Outcome(NamedTuple):
     start: Start
     fired: Mapping[str, int] = {}  # user event -> how often it happened
     bent: Mapping[str, tuple[float, Array]] = {}  # bar -> time and y where it was bent most
+    said: tuple[str, ...] = ()  # by the method itself, see doubts.py
 
 
 CRAWLS = (

@@ -85,6 +85,10 @@ def simulate(
 
     Raises ModelError where there is no consistent start.
     """
+    if METHODS[scenario.solver.method].rests:
+        from trsim.solve.path.follow import simulate as along_path
+
+        return along_path(scenario, mechanism)
     used = [import_module(f"trsim.solve.methods.{name}") for name in files(scenario, mechanism)]
     if not used:
         from trsim.solve.methods.scipy_ivp import simulate as by_scipy

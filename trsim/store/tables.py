@@ -17,7 +17,7 @@ AT_EVENTS = {
 }
 MAY_BE_NAN = {"angle"}  # of an event: a stop has none
 # of events, by their numbers in solve/march/record.py: ONSET = 1.0 and so on
-KINDS = ("", "onset", "separation", "to implicit", "to explicit", "user", "jump")
+KINDS = ("", "onset", "separation", "to implicit", "to explicit", "user", "jump", "corner", "turns")
 
 
 def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:

@@ -74,11 +74,19 @@ def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
     scenario = loads(task["resolved"], (), f"{task['name']}/resolved")
     scenario._text = task["text"]
     scenario._tree.files = dict(task["files"])
+    passes = ""
+    if scenario.sizing is not None:
+        from trsim.solve.sizing import sized
+
+        found = sized(scenario)
+        scenario, passes = found.scenario, found.in_words
     kept = _checkpoint(target, scenario)
     mechanism = assemble(scenario)
 
     def closing(file: Any) -> dict[str, Any]:
         file["provenance"].attrs[DIGEST] = task["digest"]
+        if passes:
+            file["provenance"].attrs["sizing"] = passes
         return {}
 
     blocks = _told(simulate(scenario, mechanism, kept.state if kept else None), begun)

@@ -33,6 +33,11 @@ class Solver(Statistics, total=False):
                            that fits; there where there were some
     unfollowed_steps       looks into a step in which more happened than sections and events can
                            follow; there where there were some
+    lowest_eigenvalue      of stiffness against mass along a static path, 1/s^2
+    lowest_eigenvalue_time  when, s
+    inertia_ratio          what inertia would change of the force of a drive of a static path, at
+                           most, over the largest that it has
+    inertia_ratio_time     when, s
     """
 
     method: str
@@ -49,6 +54,10 @@ class Solver(Statistics, total=False):
     rounding_of_tolerance: Number
     unproved_frictions: int
     unfollowed_steps: int
+    lowest_eigenvalue: Number
+    lowest_eigenvalue_time: Number
+    inertia_ratio: Number
+    inertia_ratio_time: Number
 
 
 class Summary(TypedDict, total=False):

@@ -93,11 +93,20 @@ class RunStatistics(Statistics, total=False):
                            that fits; only where there were some
     unfollowed_steps       looks into a step in which more happened than sections and events can
                            follow; only where there were some
+    lowest_eigenvalue      of stiffness against mass along a static path, 1/s^2
+    lowest_eigenvalue_time  when, s
+    inertia_ratio          what inertia would change of the force of a drive of a static path, at
+                           most, over the largest that it has
+    inertia_ratio_time     when, s
     """
 
     rounding_of_tolerance: Number
     unproved_frictions: int
     unfollowed_steps: int
+    lowest_eigenvalue: Number
+    lowest_eigenvalue_time: Number
+    inertia_ratio: Number
+    inertia_ratio_time: Number
     integration_cpu: Number
 
 
@@ -128,6 +137,8 @@ class Ran(Results, Result):
     resumed_from    simulated time of the checkpoint it went on from, s; null without one
     identical       whether they are those of the result file that was run again
     certificate     what a twin says of it, with --certify
+    sizing          what each pass left of the force of the drive, of that without the load; with
+                    the key `sizing`
     """
 
     status: Ended
@@ -136,6 +147,7 @@ class Ran(Results, Result):
     resumed_from: Number
     identical: NotRequired[bool]
     certificate: NotRequired[Certified]
+    sizing: NotRequired[list[Number]]
 
 
 class Run(Document):

@@ -97,6 +97,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_drift(scenario, mechanism, outcome.record),
         *of_extremes(scenario, mechanism, outcome),
         *of_friction(mechanism, outcome),
+        *outcome.said,
     )
 
 

@@ -43,6 +43,7 @@ FOUND = 200  # places between two samples where extremes are looked for
     EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, EVENT_IMPULSE, N_EVENT
 ) = range(8)  # fmt: skip
 ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
+CORNER, TURNS = 7.0, 8.0  # of a static path
 
 
 POINTS = 6  # samples of every channel that are kept: see peaks.py

@@ -27,6 +27,7 @@ from trsim.assemble.reduce import (
 )
 from trsim.elements.coordinates import of_joint, split
 from trsim.elements.prescribed import AnyDrive, rates_at
+from trsim.elements.rows import ARC
 from trsim.elements.scene import Model, Scene, scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.start.angles import as_of, follow, posed
@@ -75,6 +76,7 @@ def at_the_start(scenario: Any, mechanism: Mechanism, named: tuple[str, ...]) ->
     joints = scenario.joints.items() if not given(scenario) else ()
     playing = frozenset(n for n, s in joints if elements.load(s.type).ideal)
     named += tuple(split(own, scenario.joints)[0] for own in scenario.initial.rates)
+    named = tuple(n for n in named if ARC not in of_joint(n, scenario.joints).values())
     wanted = {own for n in named for own in of_joint(n, scenario.joints)}
     if not playing and not mechanism.beams and wanted <= {*mechanism.coordinates}:
         return mechanism

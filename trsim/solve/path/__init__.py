@@ -1,0 +1,1 @@
+"""Static paths: equilibrium at each place of a driven motion."""

@@ -1,0 +1,197 @@
+"""What is left of a balance, and how it changes with places and multipliers.
+
+    g = F - J^T lam                      forces along the axes of the solve, without inertia
+    A = [ -dg/dq  -dg/dlam ]             -dg/dlam = J^T, and more where reactions make friction
+        [  J       0       ]
+
+Velocities decide directions only: those of a state are a tiny multiple of the way it has come from
+a place before, too slow for any damper, and friction is a law whose ramp ends sooner still.
+Derivatives are central differences, of forces against places at one velocity, then against
+velocities: what is stuck gives way by the ramp.
+"""
+
+from trsim.assemble.equations import (
+    call_derivative,
+    constraints,
+    forces,
+    set_poses,
+    stored_energy,
+)
+from trsim.assemble.outputs import measure
+from trsim.assemble.projection import move_all
+from trsim.elements.contract import SCENE, compiled
+from trsim.kernels.lazy import internal
+from trsim.kernels.packed import A1, A2, I1, f8
+from trsim.kernels.signatures import float64, void
+from trsim.kernels.vectors import clear, clear_table, copy_to
+
+BY_PLACE, BY_SPEED, BY_LOAD, SLOWNESS = range(4)  # of `steps`: of the differences; see `travel`
+
+
+@compiled(void(SCENE, A1, A1, f8))
+def travel(s, before, y, times):
+    """The velocities of y <- so many times its way from a place before."""
+    for f in range(1, s.n_r):
+        v = s.n_q + s.d * (f - 1)
+        if s.d == 3:
+            for c in range(3):
+                y[v + c] = times * (y[3 * (f - 1) + c] - before[3 * (f - 1) + c])
+            continue
+        q = 7 * (f - 1)
+        for c in range(3):
+            y[v + c] = times * (y[q + c] - before[q + c])
+        a0, a1, a2, a3 = before[q + 3], -before[q + 4], -before[q + 5], -before[q + 6]
+        b0, b1, b2, b3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
+        w = 2.0 * times if a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3 >= 0.0 else -2.0 * times
+        y[v + 3] = w * (a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2)
+        y[v + 4] = w * (a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1)
+        y[v + 5] = w * (a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0)
+
+
+@internal
+def into_axes(s, F, out):
+    """Wrenches on the frames (n, 6) along the velocities of the solve."""
+    X = s.X
+    for f in range(1, s.n_r):
+        o = s.d * (f - 1)
+        if s.d == 3:
+            out[o], out[o + 1], out[o + 2] = F[f, 0], F[f, 1], F[f, 5]
+            continue
+        for c in range(3):
+            out[o + c] = F[f, c]
+            out[o + 3 + c] = X[f, 3 + c] * F[f, 3] + X[f, 6 + c] * F[f, 4] + X[f, 9 + c] * F[f, 5]
+
+
+@compiled(void(SCENE, f8, A1, A1, A1))
+def unbalanced(s, t, y, lam, g):
+    """g and, behind it, Phi at a state with its multipliers."""
+    s.status[1] += 1
+    set_poses(s, y)
+    constraints(s, t)
+    forces(s, t)
+    for k in range(s.lam.size):
+        s.lam[k] = lam[k] if k < s.m else 0.0
+    if s.rubs_with != 0:
+        call_derivative(s.rubs_with, s, t, lam, lam)
+    for k in range(s.m):
+        for l in range(s.row_start[k], s.row_start[k + 1]):
+            for c in range(6):
+                s.F[s.line_frame[l], c] -= s.J[l, c] * lam[k]
+        g[s.n_v + k] = s.phi[k]
+    into_axes(s, s.F, g)
+
+
+@internal
+def put_rows(s, A):
+    """J and J^T of the last evaluation."""
+    X, J = s.X, s.J
+    for k in range(s.m):
+        row = s.n_v + k
+        for l in range(s.row_start[k], s.row_start[k + 1]):
+            f = s.line_frame[l]
+            if f == 0:
+                continue
+            o = s.d * (f - 1)
+            if s.d == 3:
+                A[row, o], A[row, o + 1], A[row, o + 2] = J[l, 0], J[l, 1], J[l, 5]
+            else:
+                for c in range(3):
+                    A[row, o + c] = J[l, c]
+                    A[row, o + 3 + c] = (
+                        X[f, 3 + c] * J[l, 3] + X[f, 6 + c] * J[l, 4] + X[f, 9 + c] * J[l, 5]
+                    )
+            for c in range(s.d):
+                A[o + c, row] = A[row, o + c]
+
+
+@internal
+def put_difference(s, A, c, room, size):
+    """Column c of A, += minus a central difference of what is left of the balance."""
+    for k in range(s.n_v):
+        A[k, c] -= (room[2, k] - room[3, k]) / size
+
+
+@compiled(void(SCENE, f8, A1, A1, I1, A1, A2, A2))
+def system(s, t, y, lam, pressing, steps, room, A):
+    """A at a state with its multipliers.
+
+    pressing: rows whose reactions make friction; steps: of the differences, the second one 0 where
+    nothing rubs; room (4, n_y or n_v + m): states and forces.
+    """
+    n, away = s.n_v, room[1]
+    clear_table(A)
+    unbalanced(s, t, y, lam, room[2])
+    put_rows(s, A)
+    for c in range(n):
+        for side in range(2):
+            copy_to(room[0], y)
+            clear(away)
+            turns = c % s.d > 1 if s.d == 3 else c % s.d > 2
+            away[c] = steps[BY_PLACE] * (1.0 - 2.0 * side) * (1.0 if turns else s.size)
+            move_all(s, room[0], away)
+            unbalanced(s, t, room[0], lam, room[2 + side])
+        put_difference(s, A, c, room, 2.0 * abs(away[c]))
+    if steps[BY_SPEED] > 0.0:
+        for c in range(n):
+            for side in range(2):
+                copy_to(room[0], y)
+                room[0, s.n_q + c] += steps[BY_SPEED] * (1.0 - 2.0 * side)
+                unbalanced(s, t, room[0], lam, room[2 + side])
+            put_difference(s, A, c, room, 2.0 * steps[BY_SPEED] / steps[SLOWNESS])
+    for p in range(pressing.size):
+        k = pressing[p]
+        for side in range(2):
+            copy_to(away, lam)
+            away[k] += steps[BY_LOAD] * (1.0 - 2.0 * side)
+            unbalanced(s, t, y, away, room[2 + side])
+        for c in range(n):
+            A[c, n + k] = 0.0
+        put_difference(s, A, n + k, room, 2.0 * steps[BY_LOAD])
+
+
+@compiled(void(SCENE, f8, A1, A1, A1))
+def measured_with(s, t, y, lam, a):
+    """All channels at a state with its multipliers, those of redundant rows too, and its
+    accelerations along the velocities of the solve; no kinetic energy."""
+    unbalanced(s, t, y, lam, s.aside[0])
+    for k in range(s.lam.size):
+        s.lam[k] = lam[k]
+    for f in range(1, s.n_r):
+        o = s.d * (f - 1)
+        if s.d == 3:
+            s.A[f, 0], s.A[f, 1], s.A[f, 5] = a[o], a[o + 1], a[o + 2]
+            continue
+        X = s.X
+        for c in range(3):
+            r = 3 + 3 * c
+            s.A[f, c] = a[o + c]
+            s.A[f, 3 + c] = X[f, r] * a[o + 3] + X[f, r + 1] * a[o + 4] + X[f, r + 2] * a[o + 5]
+    measure(s, t, y, 0.0, 0.0)
+
+
+@compiled(float64(SCENE, f8, A1))
+def stored(s, t, y):
+    """Stored energy at a state, J."""
+    set_poses(s, y)
+    return stored_energy(s, t)
+
+
+@compiled(void(SCENE, A1, A1, A1))
+def inertia_forces(s, y, a, out):
+    """M a and what turning bodies resist with, along the velocities of the solve."""
+    for f in range(1, s.n_r):
+        o, v, I = s.d * (f - 1), s.n_q + s.d * (f - 1), s.inertia[f]
+        if s.d == 3:
+            out[o], out[o + 1] = s.mass[f] * a[o], s.mass[f] * a[o + 1]
+            out[o + 2] = I[8] * a[o + 2]
+            continue
+        w0, w1, w2 = y[v + 3], y[v + 4], y[v + 5]
+        h0 = I[0] * w0 + I[1] * w1 + I[2] * w2
+        h1 = I[3] * w0 + I[4] * w1 + I[5] * w2
+        h2 = I[6] * w0 + I[7] * w1 + I[8] * w2
+        for c in range(3):
+            out[o + c] = s.mass[f] * a[o + c]
+            out[o + 3 + c] = I[3 * c] * a[o + 3] + I[3 * c + 1] * a[o + 4] + I[3 * c + 2] * a[o + 5]
+        out[o + 3] += w1 * h2 - w2 * h1
+        out[o + 4] += w2 * h0 - w0 * h2
+        out[o + 5] += w0 * h1 - w1 * h0

@@ -1,0 +1,256 @@
+"""What changes along a static path: contacts, pieces of functions, directions, events, stability.
+
+A step of a path is smooth: contacts are held in or out, and functions on the pieces they are on.
+Whatever of it does not hold at its end any more has changed inside, and the path is cut there.
+"""
+
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.equations import gaps, poses
+from trsim.assemble.features import HELD_FROM, HELD_TO, OFFSET, SENSED, hold_all
+from trsim.assemble.switches import CHANNEL, LIMITS, TIME
+from trsim.elements.contract import Load
+from trsim.laws.functions import BY_SENSORS, BY_TIME, FREE, HELD_OF_TABLE, TABLE
+from trsim.solve.diagnose.linearised import mass_matrix
+from trsim.solve.path.balance import unbalanced
+from trsim.solve.path.place import Equations, Place
+
+Array = NDArray[np.float64]
+
+AT_REST = 1e-6  # of the mechanism's size in the time of the path: a slower sliding is none
+FLAT = 1e-9  # of the largest eigenvalue: one that is rounding
+NEARLY = 0.01  # of an arch that a gap makes in a step: what its cubic may be wrong by
+FLATTEST = 1e-12  # of the mechanism's size: an arch that is rounding
+CONTACT, PIECE, RUB, WATCH, SENSE = "contact", "piece", "rub", "watch", "sense"
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something that changes, and to what."""
+
+    kind: str
+    which: int
+    to: float
+    rate: float = 0.0  # of a gap, or of what is watched
+
+
+class Looks:
+    """What holds now, and what of it does not at another place."""
+
+    def __init__(self, equations: Equations, end: float) -> None:
+        self.eq, self.work = equations, equations.work
+        w = self.work
+        self.closed = {int(e): False for e in w.contact}
+        self.direction = dict.fromkeys(range(len(w.rubbing)), 0.0)
+        self.slow = AT_REST * w.size / end
+        self.events = equations.mechanism.stages.switches.events
+        self.side = dict.fromkeys(range(len(self.events)), 0.0)
+        self.left = [event.most for event in self.events]
+        self.columns = {c.name: c.start for c in equations.mechanism.columns}
+        self.places = watched_places(w)
+        self.sense = 0.0
+
+    def gaps(self, place: Place) -> dict[int, tuple[float, float]]:
+        """Penetration of every contact, and its rate along the path."""
+        y = self.moving(place)
+        poses(self.work, y)
+        gaps(self.work, place.t)
+        return {e: tuple(self.work.gap[e].tolist()) for e in self.closed}  # type: ignore[misc]
+
+    def moving(self, place: Place) -> Array:
+        """Its state with the velocities along the path."""
+        y = place.y.copy()
+        y[self.work.n_q : self.work.n_q + self.work.n_v] = place.v
+        return y
+
+    def slips(self, place: Place) -> Array:
+        """Sliding speeds of what rubs, along the path."""
+        w = self.work
+        if not len(w.rubbing):
+            return np.zeros(0)
+        unbalanced(w, place.t, self.moving(place), place.lam, np.zeros(self.eq.n + self.eq.m))
+        return np.array(w.loads[w.rubbing[:, 0], Load.columns["slip"].at])
+
+    def all_slide(self, place: Place) -> bool:
+        """Whether nothing that rubs sticks."""
+        return bool(np.all(np.abs(self.slips(place)) > self.slow))
+
+    def values(self, place: Place, out: Array | None) -> list[tuple[float, float]]:
+        """What user events watch, less its value, and its rate where it is known."""
+        if not self.events:
+            return []
+        w, found = self.work, []
+        poses(w, self.moving(place))
+        gaps(w, place.t)
+        for event in self.events:
+            if event.kind == CHANNEL and out is not None:
+                found.append((float(out[column_of(self.columns, event.when)]) - event.value, inf))
+            elif event.entry <= LIMITS:
+                found.append((float(w.gap[LIMITS - event.entry, 0]), inf))
+            elif event.entry == TIME:
+                found.append((place.t - event.value, inf))
+            else:
+                x, rate = w.S[event.entry].tolist()
+                found.append((x - event.value, rate))
+        return found
+
+    def hold(self, t: float, which: int) -> None:
+        """Hold functions on the pieces they are on just after t, tables on none that sensors
+        read: they are smooth but for corners that Newton's method does not mind."""
+        w = self.work
+        if len(w.feature):
+            hold_all(w, t, which)
+            if which == BY_SENSORS:
+                w.tab[self.free_places] = FREE
+
+    @property
+    def free_places(self) -> NDArray[np.int64]:
+        return np.setdiff1d(self.work.held[sensed_ones(self.work)], self.places)
+
+    def pieces(self, place: Place) -> Array:
+        """What functions would be held on at a place."""
+        w = self.work
+        if not len(self.places):
+            return np.zeros(0)
+        before = w.tab[w.held].copy()
+        poses(w, place.y)
+        self.hold(place.t, BY_SENSORS)
+        found = w.tab[self.places].copy()
+        w.tab[w.held] = before
+        return np.asarray(found)
+
+    def take(self, place: Place, out: Array | None) -> None:
+        """Hold what is so at a place where a path begins."""
+        for e, (g, _) in self.gaps(place).items():
+            self.closed[e] = g > 0.0
+        self.eq.set_phases(self.closed)
+        self.hold_all(place)
+        for k, (x, _) in enumerate(self.values(place, out)):
+            self.side[k] = float(np.sign(x))
+
+    def hold_all(self, place: Place) -> None:
+        poses(self.work, place.y)
+        self.hold(place.t, BY_TIME)
+        self.hold(place.t, BY_SENSORS)
+
+    def changes(self, place: Place, out: Array | None, sense: float) -> list[Change]:
+        """What is otherwise at a place than it is held."""
+        found = []
+        for e, (g, rate) in self.gaps(place).items():
+            if (g > 0.0) != self.closed[e] and (g != 0.0 or self.closed[e]):
+                found.append(Change(CONTACT, e, float(g > 0.0), rate))
+        now = self.pieces(place)
+        for k in np.flatnonzero(now != self.work.tab[self.places]).tolist():
+            if now[k] != FREE and self.work.tab[self.places[k]] != FREE:
+                found.append(Change(PIECE, int(k), float(now[k])))
+        for k, slip in enumerate(self.slips(place).tolist()):
+            if abs(slip) > self.slow and np.sign(slip) == -self.direction[k]:
+                found.append(Change(RUB, k, float(np.sign(slip)), slip))
+        for k, (x, rate) in enumerate(self.values(place, out)):
+            if self.left[k] > 0 and self.side[k] != 0.0 and x * self.side[k] <= 0.0:
+                found.append(Change(WATCH, k, -self.side[k], rate))
+        if self.sense != 0.0 and sense != self.sense:
+            found.append(Change(SENSE, 0, sense))
+        return found
+
+    def directions(self, place: Place) -> None:
+        """Take directions of sliding where there was none."""
+        for k, slip in enumerate(self.slips(place).tolist()):
+            if abs(slip) > self.slow:
+                self.direction[k] = float(np.sign(slip))
+
+    def hidden(self, a: Place, b: Place) -> bool:
+        """Whether a contact may close and open again inside a step, or the other way round."""
+        h, first, last = b.t - a.t, self.gaps(a), self.gaps(b)
+        return any(
+            turns_through(first[e], last[e], h, -1.0 if inside else 1.0, self.work.size)
+            for e, inside in self.closed.items()
+        )
+
+    def whose(self, k: int) -> int:
+        """The instance that has the function of a piece; -1 of none."""
+        w, mechanism = self.work, self.eq.mechanism
+        place = self.places[k]
+        for row in w.feature:
+            if place in w.held[row[HELD_FROM] : row[HELD_TO]]:
+                name = next((f.name for f in mechanism.functions if f.offset == row[OFFSET]), "")
+                section, _, rest = name.partition(".")
+                for e, instance in enumerate(mechanism.instances):
+                    if instance.section == section and rest.startswith(f"{instance.name}."):
+                        return e
+        return -1
+
+
+def turns_through(
+    first: tuple[float, float], last: tuple[float, float], h: float, side: float, size: float
+) -> bool:
+    """Whether the cubic through a gap and its rates at both ends of a step passes zero inside.
+
+    side: 1 of what is open, whose gap is below zero."""
+    g0, r0, g1, r1 = side * first[0], side * h * first[1], side * last[0], side * h * last[1]
+    if g0 > 0.0 or g1 > 0.0 or r0 <= 0.0 or r1 >= 0.0:
+        return False
+    # g0 + x (r0 + x (a + x b)), at the roots of its slope
+    a, b = 3.0 * (g1 - g0) - 2.0 * r0 - r1, 2.0 * (g0 - g1) + r0 + r1
+    root = np.sqrt(a * a - 3.0 * b * r0)  # the slope changes its sign inside: there is one
+    x = r0 / (root - a)
+    top = g0 + x * (r0 + x * (a + x * b))
+    arch = top - max(g0, g1)
+    return bool(arch > FLATTEST * size and top > -NEARLY * arch)
+
+
+def column_of(columns: dict[str, int], channel: str) -> int:
+    """The column of a channel, or of a component of it."""
+    if channel in columns:
+        return columns[channel]
+    return columns[channel[:-2]] + "xyz".index(channel[-1])
+
+
+def sensed_ones(w: Any) -> NDArray[np.int64]:
+    """Entries of `held` of functions that sensors meet corners of."""
+    rows = [range(int(r[HELD_FROM]), int(r[HELD_TO])) for r in w.feature if r[SENSED] > 0]
+    return np.array([k for row in rows for k in row], np.int64)
+
+
+def watched_places(w: Any) -> NDArray[np.int64]:
+    """Places in tab of what corners are held on that are told: of operations, not of tables."""
+    found = []
+    for row in w.feature:
+        if row[SENSED] == 0:
+            continue
+        o = int(row[OFFSET])
+        for place in w.held[row[HELD_FROM] : row[HELD_TO]].tolist():
+            if not (w.tab[o] == TABLE and place == o + HELD_OF_TABLE):
+                found.append(int(place))
+    return np.array(found, np.int64)
+
+
+def stability(eq: Equations, place: Place) -> tuple[float, float, Array | None]:
+    """The sign of the determinant; the lowest eigenvalue of the stiffness against the mass, 1/s^2,
+    inf where nothing is free; and the motion that goes with it."""
+    n, m, A = eq.n, eq.m, place.A
+    sign, _ = np.linalg.slogdet(A)
+    if n == m:
+        return float(sign), inf, None
+    Z = null_space(A[n:, :n] * eq.unit, n - m) * eq.unit[:, None]
+    W = null_space(A[:n, n:].T * eq.unit, n - m) * eq.unit[:, None]
+    M = mass_matrix(eq.work)
+    values, vectors = np.linalg.eig(np.linalg.solve(W.T @ M @ Z, W.T @ A[:n, :n] @ Z))
+    k = int(np.argmin(values.real))
+    value = float(values[k].real)
+    if abs(value) < FLAT * np.abs(values).max() and len(values) > 1:
+        value = 0.0
+    return float(sign), value, np.asarray((Z @ vectors[:, k]).real)
+
+
+def null_space(J: Array, free: int) -> Array:
+    """Columns that span what J does not see."""
+    if not len(J):
+        return np.eye(J.shape[1])
+    q, _ = np.linalg.qr(J.T, mode="complete")
+    return np.asarray(q[:, q.shape[1] - free :])

@@ -1,0 +1,360 @@
+"""A static path followed: steps, what changes on the way, and where it ends.
+
+A step goes along the tangent and is brought into balance by Newton's method.  It is made again,
+half as long, where that fails, and where the place found is further from the tangent than the step
+is long, unless that is next to nothing: another branch is as far however short the step.  Steps end
+at output rows, at corners of functions of time, and where something changes (changes.py), found by
+halving.  Where steps shrink to nothing there is no balance ahead: fold.py looks how it ends.
+"""
+
+import time
+from collections.abc import Generator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.equations import poses
+from trsim.assemble.mechanism import Mechanism
+from trsim.elements.scene import scene
+from trsim.errors import ModelError
+from trsim.solve.march import record as rec
+from trsim.solve.march.features import next_time
+from trsim.solve.outcome import Block, Outcome, new_record, settings, statistics
+from trsim.solve.path.balance import travel
+from trsim.solve.path.begin import begin, check
+from trsim.solve.path.changes import RUB, Change, Looks, stability
+from trsim.solve.path.fold import fold
+from trsim.solve.path.log import Log
+from trsim.solve.path.place import RAMP, SLOW, Equations, Place
+from trsim.solve.path.results import APART, Results, slope
+
+Array = NDArray[np.float64]
+
+FAR = 0.05  # rad, or of the mechanism's size: what anything moves in a step at most
+ASTRAY = 0.5  # of what a step moves: how far from its tangent a place is found
+BESIDE = 1e-6  # of the mechanism's size: the same, however long the step is
+SHORTEST = 1e-12  # of the path: a step
+SAME = 1e-13  # of the path: where a change is, and whether it has been reached
+FIRST = 1e-4  # of the time between rows: how far ahead the direction of the start is taken
+SURE = 100.0  # times what full sliding takes, or further
+MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
+SEEN = 0.01  # of the path: in that time what slides goes further than full sliding takes
+AGAIN = 50  # changes at one place: it is none
+BLOCK = 500  # rows
+
+
+def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Block, None, Outcome]:
+    """As solve/simulate.py's: the path from t = 0 to the end, or to where it ends."""
+    check(scenario, mechanism)
+    clock = time.process_time()
+    path = Path(scenario, mechanism)
+    yield from path.run()
+    return path.outcome(time.process_time() - clock)
+
+
+class Path:
+    """A path as far as it was followed."""
+
+    def __init__(self, scenario: Any, mechanism: Mechanism) -> None:
+        self.scenario, self.mechanism = scenario, mechanism
+        self.setting = settings(scenario, mechanism)
+        self.end, self.every = float(self.setting.t_end), float(self.setting.every)
+        self.begun = begin(scenario, mechanism)
+        self.eq = Equations(mechanism, self.begun)
+        self.eq.small = 1e-6 * min(self.every, self.end)
+        self.looks = Looks(self.eq, self.end)
+        self.results = Results(self.eq, self.every)
+        self.log = Log(self.looks, self.results)
+        self.hears = any(event.kind == "channel" for event in self.looks.events)
+        self.before: Place | None = None  # behind the place that is known last, on a smooth piece
+        self.next_row, self.steps, self.rejected = 1, 0, 0
+        self.lowest = (np.inf, 0.0)
+        self.longest = float(scenario.solver.max_step or self.end)
+
+    # --- the way -------------------------------------------------------------------------------
+
+    def run(self) -> Generator[Block, None, None]:
+        """Follow the path; its rows."""
+        place = self.first()
+        h, again, last = self.every, 0, -1.0
+        while place.t < self.end * (1.0 - SAME):
+            to = self.until(place.t, h)
+            trial = self.reached(place, to)
+            if trial is None:
+                self.rejected += 1
+                h = 0.5 * (to - place.t)
+                if h < SHORTEST * self.end:
+                    self.stop(place)
+                    break
+                continue
+            changes = self.changed(trial)
+            if changes and trial.t - place.t > SAME * self.end:
+                trial, changes = self.narrowed(place, trial, changes)
+            self.steps += 1
+            long = trial.t - place.t
+            corner = self.at_corner(place.t, trial.t)
+            self.accept(place, trial, smooth=not changes and not corner)
+            place = trial
+            if changes or corner:
+                again = again + 1 if place.t - last <= SAME * self.end else 0
+                last = place.t
+                place = self.beyond(place, changes)
+                if place is None or again > AGAIN or self.log.reason:
+                    self.stop(trial, changes)
+                    break
+            h = min(max(h, 2.0 * long), self.longest) if not changes else max(h, self.every)
+            yield from self.block(BLOCK)
+        else:
+            self.kept(place, None)
+        yield from self.block(0)
+
+    def first(self) -> Place:
+        """The place where it begins, with the directions in which it goes on."""
+        eq, y = self.eq, self.begun.y
+        poses(eq.work, y)
+        self.looks.closed = {e: False for e in self.looks.closed}
+        none = np.zeros((0, 0))
+        start = Place(0.0, y, np.zeros(eq.m), none, none, np.zeros(eq.n), np.zeros(eq.m))
+        self.looks.take(start, None)
+        found = eq.solved(0.0, y, eq.multipliers(0.0, y), None)
+        place = eq.place(0.0, *found) if found is not None else None
+        if place is None:
+            raise ModelError(
+                "no equilibrium at the start that a path could begin at",
+                "does something hold every load, and every body?  `trsim statics` tells more",
+                ("solver", "method"),
+            )
+        place = self.directed(place)
+        self.looks.hold_all(place)
+        self.looks.directions(place)
+        out = self.results.out(place, place.v * 0.0) if self.hears else None
+        for k, (x, _) in enumerate(self.looks.values(place, out)):
+            self.looks.side[k] = float(np.sign(x))
+        self.judge(place)
+        if self.looks.sense == -1.0:
+            self.log.falls.append((0.0, f"the equilibrium is unstable{self.log.where(place)}"))
+        return place
+
+    def directed(self, place: Place) -> Place:
+        """The start with friction against the way it is going to go."""
+        eq = self.eq
+        if not eq.rubs:
+            return place
+        first, h = slice(eq.work.n_q, eq.work.n_q + eq.n), FIRST * self.every
+        while True:
+            found = eq.solved(h, eq.at_time(place.y, 0.0, h), place.lam, None)
+            if found is None:
+                return place
+            ahead = found[0].copy()
+            travel(eq.work, place.y, ahead, SLOW)
+            if h >= self.every or np.abs(ahead[first] / eq.unit).max() > SLOW * SURE * RAMP:
+                break
+            h *= 10.0
+        y = place.y.copy()
+        y[first] = ahead[first]
+        eq.frozen = True
+        again = eq.solved(0.0, y, found[1], None)
+        there = eq.place(0.0, *again) if again is not None else None
+        eq.frozen = False
+        return there or place
+
+    def until(self, t: float, h: float) -> float:
+        """Where a step of h ends, at the latest."""
+        row = (np.floor(t / self.every * (1.0 + SAME) + SAME) + 1.0) * self.every
+        ends = min(self.end, float(row))
+        work = self.eq.work
+        if len(work.feature):
+            ends = min(ends, float(next_time(work, t, self.end)))
+        for event in self.looks.events:
+            if event.entry == -1 and event.kind == "time" and event.value > t:
+                ends = min(ends, event.value)
+        return ends if t + 1.001 * h >= ends else t + h
+
+    def reached(self, place: Place, t: float, within: float = 0.0) -> Place | None:
+        """The place at t, on the same branch; None where it is not found.
+
+        within: a way that is known to be long enough; then nothing else is asked."""
+        eq, h = self.eq, t - place.t
+        y = eq.at_time(eq.moved(place.y, h * place.v), place.t, t)
+        found = eq.solved(t, y, place.lam + h * place.lam_rate, place.inverse)
+        if found is None:
+            return None
+        way, off = self.way(place.y, found[0]), self.way(y, found[0])
+        if within:
+            return eq.place(t, *found) if way <= within else None
+        if way > FAR or off > max(ASTRAY * way, BESIDE):
+            return None
+        there = eq.place(t, *found)
+        if there is None or self.looks.hidden(place, there):
+            return None
+        if eq.turning and self.looks.all_slide(there):
+            return eq.along_itself(there, SEEN * self.end)
+        return there
+
+    def way(self, y: Array, y1: Array) -> float:
+        """The furthest way of a body, rad or of the mechanism's size."""
+        eq, there = self.eq, y1.copy()
+        travel(eq.work, y, there, 1.0)
+        ways = there[eq.work.n_q : eq.work.n_q + eq.n] / eq.unit
+        return float(np.abs(ways).max(initial=0.0))
+
+    def changed(self, place: Place) -> list[Change]:
+        out = self.results.out(place, 0.0 * place.v) if self.hears else None
+        return self.looks.changes(place, out, self.sense(place))
+
+    def narrowed(
+        self, place: Place, trial: Place, changes: list[Change]
+    ) -> tuple[Place, list[Change]]:
+        """The first place at which something has changed, and what."""
+        low = place
+        while trial.t - low.t > SAME * self.end:
+            within = 2.0 * self.way(low.y, trial.y) + BESIDE
+            middle = self.reached(low, 0.5 * (low.t + trial.t), within)
+            if middle is None:
+                break
+            found = self.changed(middle)
+            if found:
+                trial, changes = middle, found
+            else:
+                low = middle
+        return trial, changes
+
+    def at_corner(self, t0: float, t1: float) -> bool:
+        """Whether the time met a corner of a function at the end of a step."""
+        work = self.eq.work
+        if not len(work.feature):
+            return False
+        return float(next_time(work, t0, 2.0 * self.end)) <= t1 * (1.0 + SAME)
+
+    def beyond(self, place: Place, changes: list[Change]) -> Any:
+        """The same place as it goes on behind what changes there; None where it does not."""
+        eq, looks = self.eq, self.looks
+        for change in changes:
+            self.log.note(place, change)
+        if self.log.reason:
+            return place
+        eq.set_phases(looks.closed)
+        if all(change.kind == RUB for change in changes) and changes:
+            eq.anchor, self.results.turned = place.y.copy(), True
+            return place
+        looks.hold_all(place)
+        found = eq.solved(place.t, place.y, place.lam, None)
+        if found is None:
+            return None
+        jump = self.way(place.y, found[0])
+        if jump > BESIDE:
+            text = f"the path jumps by {jump:.3g} of the mechanism's size"
+            self.log.falls.append((place.t, text))
+            self.results.jumped = True
+        there = eq.place(place.t, *found)
+        if there is not None:
+            self.judge(there)
+            self.anchored(there)
+        return there
+
+    # --- what is kept --------------------------------------------------------------------------
+
+    def accept(self, place: Place, trial: Place, smooth: bool) -> None:
+        """Keep the place that was known last, with accelerations by those next to it."""
+        self.kept(place, trial)
+        self.before = place
+        work = self.eq.work
+        poses(work, trial.y)
+        work.branch[:] = work.S[:, 0]
+        self.looks.directions(trial)
+        self.before = place
+        if not smooth:
+            self.kept(trial, None)
+            self.before = None
+        else:
+            self.judge(trial)
+            self.anchored(trial)
+
+    def anchored(self, place: Place) -> None:
+        """Take directions from here on, unless that would be from next to nothing."""
+        if self.way(self.eq.anchor, place.y) > MOVED:
+            self.eq.anchor = place.y.copy()
+
+    def kept(self, place: Place, after: Place | None) -> None:
+        a = slope(self.before, place, after, APART * self.every)
+        row = round(place.t / self.every)
+        at_row = row >= self.next_row and abs(place.t - row * self.every) <= SAME * self.end
+        out = self.results.keep(place, a, at_row)
+        self.results.touching(place, out, self.looks.closed)
+        if at_row:
+            self.next_row = row + 1
+
+    def sense(self, place: Place) -> float:
+        """On which side of a change of stability a place is."""
+        sign, value, _ = stability(self.eq, place)
+        if not np.isfinite(value):
+            return 2.0 * sign
+        return 1.0 if value > 0.0 else -1.0
+
+    def judge(self, place: Place) -> None:
+        """Take the lowest eigenvalue."""
+        _, value, _ = stability(self.eq, place)
+        self.looks.sense = self.sense(place)
+        if np.isfinite(value) and value < self.lowest[0]:
+            self.lowest = value, place.t
+
+    def stop(self, place: Place, changes: Any = None) -> None:
+        """The path ends before its time: at a place that is not kept yet, or behind changes."""
+        if changes is None:
+            found = None if self.log.reason else fold(self.eq, place, self.end)
+            self.kept(place, found)
+            if found is not None:
+                self.before = place
+                self.kept(found, None)
+            place = found or place
+            self.log.ended(place, found is not None, ())
+        else:
+            self.log.ended(place, False, changes)
+        self.last_row(place)
+
+    def last_row(self, place: Place) -> None:
+        """A row where the path ends between two of them."""
+        rows = self.results.rows
+        if rows and rows[-1][0] < place.t * (1.0 - SAME):
+            self.results.rows.append(
+                np.concatenate([[place.t], self.results.out(place, np.zeros(self.eq.n))])
+            )
+            self.results.rows[-1][-1] -= self.results.zero
+
+    def block(self, least: int) -> Generator[Block, None, None]:
+        """What was kept since the last one, where that is enough."""
+        kept = self.results
+        if least and len(kept.rows) < least:
+            return
+        work = self.eq.work
+        wide = 2 + int(np.max(work.contact_width, initial=0))
+        yield Block(
+            np.array(kept.rows).reshape(-1, 1 + work.n_out),
+            np.array(kept.steps).reshape(-1, wide),
+            np.array(self.log.events).reshape(-1, rec.N_EVENT),
+            kept.last.t if kept.last else 0.0, 0.0, len(self.log.events),
+            np.array(kept.recorded).reshape(-1, 2 + work.n_out), np.zeros((0, rec.N_POINT)),
+        )  # fmt: skip
+        kept.rows, kept.steps, kept.recorded = [], [], []
+        self.log.events = []
+
+    def outcome(self, cpu: float) -> Outcome:
+        """How it ended, and what is told of it."""
+        work, kept = scene(self.mechanism.model), self.results
+        r = new_record(work, self.begun, (), 1)
+        r.steps, r.rejected, r.events = self.steps, self.rejected, self.log.count
+        r.t = kept.last.t if kept.last else 0.0
+        r.largest_energy, r.largest_residual = kept.largest_energy, kept.largest_residual
+        for k in range(rec.N_PEAK):
+            r.peak[k] = kept.peak[k]
+        numbers = statistics(r, work, self.begun, cpu)
+        numbers["evaluations"] = int(self.eq.work.status[1])
+        if np.isfinite(self.lowest[0]):
+            numbers["lowest_eigenvalue"], numbers["lowest_eigenvalue_time"] = self.lowest
+        ratios = kept.ratios()
+        if ratios:
+            _, ratio, when = max(ratios, key=lambda one: one[1])
+            numbers["inertia_ratio"], numbers["inertia_ratio_time"] = ratio, when
+        return Outcome(self.log.status, self.log.reason, float(r.t), numbers, kept.peak.T.copy(),
+                       r, self.begun, self.log.fired, said=tuple(self.log.said()))  # fmt: skip

@@ -1,0 +1,142 @@
+"""What is told of a static path: its events, where it loses stability, how it ends."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.equations import poses
+from trsim.solve.march import record as rec
+from trsim.solve.path.changes import CONTACT, PIECE, RUB, SENSE, WATCH, Change, Looks
+from trsim.solve.path.place import Place
+from trsim.solve.path.results import DAMPERS, INERTIA, Results
+from trsim.statuses import Ended
+
+Array = NDArray[np.float64]
+
+TOLD = 0.05  # of the largest force of a drive: what inertia may add untold
+SHOWN = 4  # coordinates of joints in a sentence
+BOTH = 1.5  # signs beyond it are those of places where nothing is free
+
+
+class Log:
+    """Events of a path, and its end."""
+
+    def __init__(self, looks: Looks, results: Results) -> None:
+        self.looks, self.results, self.eq = looks, results, looks.eq
+        self.mechanism = self.eq.mechanism
+        self.events: list[Array] = []
+        self.count = 0
+        self.status: Ended = "done"
+        self.reason = ""
+        self.falls: list[tuple[float, str]] = []
+        self.fired = {event.name: 0 for event in looks.events if event.kind != "limit"}
+
+    def note(self, place: Place, change: Change) -> None:
+        """A line of the table of events, and what follows from it."""
+        looks, kind, row = self.looks, 0.0, -1
+        if change.kind == CONTACT:
+            looks.closed[change.which] = change.to > 0.0
+            kind, row = rec.ONSET if change.to > 0.0 else rec.SEPARATION, change.which
+        elif change.kind == PIECE:
+            kind, row = rec.CORNER, looks.whose(change.which)
+        elif change.kind == RUB:
+            looks.direction[change.which] = change.to
+            kind, row = rec.TURNS, int(self.eq.work.rubbing[change.which, 0])
+        elif change.kind == SENSE:
+            self.unstable(place, change)
+        elif change.kind == WATCH:
+            kind, row = self.happened(place, change)
+        known = [line[:3].tolist() for line in self.events]
+        if row >= 0 and [place.t, kind, row] not in known:
+            self.count += 1
+            self.events.append(np.array([place.t, kind, row, change.rate, np.nan, 0.0, 0.0]))
+
+    def happened(self, place: Place, change: Change) -> tuple[float, int]:
+        """A user event, or a limit of an element."""
+        looks, k = self.looks, change.which
+        event = looks.events[k]
+        looks.side[k] = change.to
+        if event.direction not in (0, change.to):
+            return 0.0, -1
+        looks.left[k] -= 1
+        if event.name in self.fired:
+            self.fired[event.name] += 1
+        if event.record:
+            out = self.results.out(place, np.zeros(self.eq.n))
+            self.results.recorded.append(np.array([place.t, k, *out]))
+        if event.end and not self.reason:
+            self.status = event.status
+            self.reason = f"event '{event.name}' ended the run"
+            if event.kind == "limit":
+                limit = f"{event.value:g} {event.unit}"
+                self.reason = f"{event.when} {event.said} ({limit}) at t = {place.t:.6g} s"
+        return rec.USER, len(self.mechanism.instances) + 1 + k
+
+    def unstable(self, place: Place, change: Change) -> None:
+        """Tell where the balance loses its stability, or finds it."""
+        if abs(change.to) > BOTH:
+            self.status = "limit" if self.eq.rubs else "failed"
+            self.reason = (
+                f"at t = {place.t:.9g} s{self.where(place)} rows of joints and drives depend on "
+                "each other, or friction locks them: behind it the path is not the only one"
+            )
+            return
+        word = "unstable" if change.to < 0.0 else "stable again"
+        self.falls.append((place.t, f"the equilibrium is {word}{self.where(place)}"))
+
+    def where(self, place: Place) -> str:
+        """The coordinates of joints at a place, in words."""
+        poses(self.eq.work, place.y)
+        S, units = self.eq.work.S, {"angle": "rad", "stroke": "m"}
+        told = [
+            f"{name} = {float(S[x.entry, 0]):.6g} {units[x.kind]}"
+            for name, x in self.mechanism.coordinates.items()
+            if x.joint and x.entry >= 0 and x.kind in units
+        ]
+        return f" ({', '.join(told[:SHOWN])})" if told else ""
+
+    def ended(self, place: Place, turns: bool, changes: Any) -> None:
+        """The path ends here, unless an event has ended it."""
+        if self.reason:
+            return
+        self.status, self.reason = "limit", self.told(place, turns, changes)
+        if not turns and not self.finite(place):
+            self.status = "failed"
+            self.reason = f"a force is not finite behind t = {place.t:.9g} s"
+
+    def finite(self, place: Place) -> bool:
+        """Whether forces are numbers just behind a place."""
+        ahead = self.eq.at_time(place.y, place.t, place.t + self.eq.small)
+        return bool(np.isfinite(self.eq.left(place.t + self.eq.small, ahead, place.lam)).all())
+
+    def told(self, place: Place, turns: bool, changes: Any) -> str:
+        """Why a path ends."""
+        at = f"t = {place.t:.9g} s{self.where(place)}"
+        names = [self.mechanism.instances[c.which].name for c in changes if c.kind == CONTACT]
+        if names:
+            return f"no equilibrium next to it behind {at}, where '{names[0]}' opens or closes"
+        if turns and self.eq.n > self.eq.m:
+            return (
+                f"limit point at {at}: the path turns back there, and no equilibrium is near "
+                "ahead; the mechanism snaps through"
+            )
+        if turns:
+            return f"dead end at {at}: the drives ask for places that joints do not reach"
+        locks = ": does friction lock it?" if self.eq.rubs else ""
+        return f"no equilibrium next to it behind {at}{locks}"
+
+    def said(self) -> Iterator[str]:
+        """What is worth knowing of the path."""
+        for t, text in self.falls:
+            yield f"solver.method: at t = {t:.9g} s {text}"
+        for of, what in ((INERTIA, "inertia"), (DAMPERS, "dampers and functions of rates")):
+            for name, ratio, when in self.results.ratios(of):
+                if ratio > TOLD:
+                    yield (
+                        f"{name}: at this speed {what} would change its force by up to "
+                        f"{100 * ratio:.2g} % of the largest it has (at t = {when:.6g} s): the "
+                        "path is no picture of the motion there; go slower, or let the motion be "
+                        "computed"
+                    )

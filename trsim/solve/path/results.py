@@ -1,0 +1,206 @@
+"""Results of a static path: rows, peaks, works and what inertia would add.
+
+Forces are those at rest, velocities and accelerations those of the path at the speed of t: every
+place is measured twice, and a channel of force, moment, work or energy is taken from the first
+time, any other from the second.  There is no kinetic energy.
+
+What the inertia of the path's accelerations a would change, to first order:
+
+    [ K  G ] [ dq   ]     [ M a + w x I w ]
+    [ J  0 ] [ dlam ] = - [ 0             ]
+
+The inertia ratio of a drive is the largest of its dlam over the largest of its lam.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.dense import least_squares
+from trsim.assemble.equations import constraints, poses
+from trsim.assemble.reduce import along_rates, less_reactions, moves, spread_out
+from trsim.elements.contract import DRIVES, FRICTION, LOADS, N_BOOK
+from trsim.elements.prescribed import AnyDrive
+from trsim.solve.march import record as rec
+from trsim.solve.path.balance import inertia_forces, measured_with, travel, unbalanced
+from trsim.solve.path.place import SLOW, Equations, Place
+
+Array = NDArray[np.float64]
+
+AT_REST = ("N", "J", "Pa")  # in the unit of what is told as at rest
+DEPENDENT = 1e-10  # relative size of a row that is not independent
+APART = 1e-7  # of the time between rows: places that are nearer tell no acceleration
+INERTIA, DAMPERS, FORCE = range(3)  # of what is kept of drives
+NO_LOAD = 1e-6  # of the largest force, at the size: a drive that gives less gives none
+
+
+class Results:
+    """What is kept of the places of a path."""
+
+    def __init__(self, equations: Equations, every: float) -> None:
+        self.eq, self.w, self.every = equations, equations.work, every
+        w, mechanism = self.w, equations.mechanism
+        self.told = np.zeros(w.n_out, bool)
+        for c in mechanism.columns:
+            alone = any(unit in c.unit.split("/")[0] for unit in AT_REST)
+            self.told[c.start : c.start + c.size] = alone
+        squares = len(w.vector)
+        self.peak = np.zeros((rec.N_PEAK, w.n_out + squares))
+        self.peak[rec.PEAK_MAX], self.peak[rec.PEAK_MIN] = -1e300, 1e300
+        self.rows: list[Array] = []
+        self.steps: list[Array] = []
+        self.recorded: list[Array] = []
+        self.last: Place | None = None
+        self.works = np.zeros(N_BOOK)
+        self.turned = self.jumped = False
+        self.residual = 0.0
+        self.zero = 0.0  # J, the energy at the start
+        self.drives = [
+            (f"drives.{i.name}", int(AnyDrive(w, e).row), w.size if AnyDrive(w, e).rotates else 1.0)
+            for e, i in enumerate(mechanism.instances)
+            if i.section == "drives" and AnyDrive(w, e).row >= 0
+        ]
+        # of every drive: what inertia adds, what dampers do, its force; each with its time
+        self.most = np.zeros((len(self.drives), 3, 2))
+        self.largest_energy = self.largest_residual = 0.0
+
+    def out(self, place: Place, a: Array) -> Array:
+        """All channels at a place with its accelerations."""
+        w, y = self.w, place.y.copy()
+        lam = self.all_rows(place)
+        first = w.n_q + w.n_v
+        y[first : first + N_BOOK] = self.works
+        measured_with(w, place.t, y, lam, np.zeros(w.n_v))
+        still = w.out[: w.n_out].copy()
+        still[w.column_energy] = 0.0
+        y[w.n_q : first] = place.v
+        measured_with(w, place.t, y, lam, a)
+        found = np.where(self.told, still, w.out[: w.n_out])
+        return np.asarray(found)
+
+    def all_rows(self, place: Place) -> Array:
+        """Multipliers of all rows: of least norm where some are redundant."""
+        w = self.w
+        lam = np.zeros(len(w.lam))
+        lam[: w.m] = place.lam
+        if not len(w.redundant):
+            return lam
+        poses(w, place.y)
+        constraints(w, place.t)
+        there = moves(w, w.d == 3)
+        held = np.zeros((w.n, 6))
+        less_reactions(w, held, -place.lam)
+        J = spread_out(w, len(lam))[:, there].T
+        unit = w.size / np.asarray(w.row_unit)
+        return np.asarray(unit * least_squares(J * unit, along_rates(w, held)[there], DEPENDENT))
+
+    def work(self, place: Place, way: Array, dt: float) -> Array:
+        """Of the energy book, on a way through a place: with the forces there."""
+        w, y, n = self.w, place.y.copy(), self.eq.n
+        y[w.n_q : w.n_q + w.n_v] = SLOW * way
+        unbalanced(w, place.t, y, place.lam, np.zeros(n + self.eq.m))
+        found = np.zeros(N_BOOK)
+        found[DRIVES] = w.zd[DRIVES] * dt - float(place.lam @ (place.A[n:, :n] @ way))
+        found[LOADS], found[FRICTION] = w.zd[LOADS] / SLOW, w.zd[FRICTION] / SLOW
+        return found
+
+    def worked(self, place: Place) -> None:
+        """Add the works since the place before, by the forces at both."""
+        if self.last is not None:
+            w, there = self.w, place.y.copy()
+            travel(w, self.last.y, there, 1.0)
+            way, dt = there[w.n_q : w.n_q + w.n_v], place.t - self.last.t
+            # multipliers of a place at which friction turns round are those of the way to it
+            first = place if self.turned else self.last
+            self.works += 0.5 * (self.work(first, way, dt) + self.work(place, way, dt))
+            self.turned = self.turned and dt == 0.0
+        self.last = place
+
+    def keep(self, place: Place, a: Array, row: bool) -> Array:
+        """Take a place that is known with its accelerations: works, peaks, steps, inertia."""
+        self.worked(place)
+        out = self.out(place, a)
+        energies = out[self.w.column_energy :]
+        if not self.rows:
+            self.zero = energies[-1]
+        if self.jumped:  # what a jump loses is no error of the book
+            self.zero += energies[-1] - self.zero - self.residual
+        energies[-1] -= self.zero
+        self.jumped, self.residual = False, float(energies[-1])
+        self.largest_energy = max(self.largest_energy, float(np.abs(energies[:-1]).max()))
+        self.largest_residual = max(self.largest_residual, abs(float(energies[-1])))
+        squares = [np.linalg.norm(out[k : k + 3]) for k in self.w.vector.tolist()]
+        for k, x in ((rec.PEAK_MAX, 1.0), (rec.PEAK_MIN, -1.0)):
+            values = np.array([*out, *squares])
+            further = x * values > x * self.peak[k]
+            self.peak[k, further], self.peak[k + 1, further] = values[further], place.t
+        self.inertia(place, a)
+        if row or not self.rows:
+            self.rows.append(np.concatenate([[place.t], out]))
+        return out
+
+    def touching(self, place: Place, out: Array, closed: dict[int, bool]) -> None:
+        """A line for each contact that is in."""
+        w = self.w
+        width = 2 + int(np.max(w.contact_width, initial=0))
+        for c, e in enumerate(w.contact.tolist()):
+            if closed[e] and w.wanted[e] >= 0:
+                line = np.zeros(width)
+                line[:2] = place.t, e
+                many = int(w.contact_width[c])
+                line[2 : 2 + many] = out[w.wanted[e] : w.wanted[e] + many]
+                self.steps.append(line)
+
+    def inertia(self, place: Place, a: Array) -> None:
+        """What inertia would add to the forces of rigid drives."""
+        if not self.drives:
+            return
+        n, w = self.eq.n, self.w
+        force = np.zeros(n + self.eq.m)
+        y = place.y.copy()
+        y[w.n_q : w.n_q + w.n_v] = place.v
+        inertia_forces(w, y, a, force)
+        for f, lacking in zip(w.light.tolist(), w.lacking, strict=True):
+            self.take_back(force, y, a, (f, lacking))
+        g = np.zeros((2, n + self.eq.m))
+        unbalanced(w, place.t, y, place.lam, g[0])
+        unbalanced(w, place.t, place.y, place.lam, g[1])
+        damped = np.zeros(n + self.eq.m)
+        damped[:n] = g[0, :n] - g[1, :n]
+        inertia, dampers = place.inverse @ -force, place.inverse @ damped
+        for k, (_, row, _) in enumerate(self.drives):
+            for at, x in enumerate((inertia[n + row], dampers[n + row], place.lam[row])):
+                if abs(x) > self.most[k, at, 0]:
+                    self.most[k, at] = abs(x), place.t
+
+    def take_back(self, force: Array, y: Array, a: Array, light: tuple[int, Array]) -> None:
+        """Take away the inertia that a body without mass does not have."""
+        (f, more), w = light, self.w
+        o = w.d * (f - 1)
+        if w.d == 3:
+            force[o : o + 2] -= more[0] * a[o : o + 2]
+            force[o + 2] -= more[9] * a[o + 2]
+            return
+        I, omega = more[1:].reshape(3, 3), y[w.n_q + o + 3 : w.n_q + o + 6]
+        force[o : o + 3] -= more[0] * a[o : o + 3]
+        force[o + 3 : o + 6] -= I @ a[o + 3 : o + 6] + np.cross(omega, I @ omega)
+
+    def ratios(self, of: int = INERTIA) -> list[tuple[str, float, float]]:
+        """Of every rigid drive: its name, what inertia, or dampers, would add at most, of the
+        largest force it has, and when."""
+        return [
+            (name, float(most[of, 0] / most[FORCE, 0]), float(most[of, 1]))
+            for (name, _, lever), most in zip(self.drives, self.most, strict=True)
+            if most[FORCE, 0] > NO_LOAD * lever * self.eq.load
+        ]
+
+
+def slope(before: Place | None, place: Place, after: Place | None, least: float) -> Array:
+    """Accelerations at a place by the velocities there and next to it."""
+    near = [p for p in (before, after) if p is not None and abs(p.t - place.t) > least]
+    if not near:
+        return np.zeros_like(place.v)
+    rates = [(p.v - place.v) / (p.t - place.t) for p in near]
+    if len(near) == 1:
+        return np.asarray(rates[0])
+    h, k = abs(near[0].t - place.t), abs(near[1].t - place.t)
+    return np.asarray((k * rates[0] + h * rates[1]) / (h + k))
