@@ -20,13 +20,13 @@ from trsim.elements.joint import triad
 from trsim.elements.rows import ARC, COORDINATES
 from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names, rebuilt
-from trsim.fields import RATE
 from trsim.frame import Frame
 from trsim.laws import functions
 from trsim.laws.waves import waves
 from trsim.scenario.load import unit_of
 from trsim.scenario.slender import ends
 from trsim.units import fits
+from trsim.varying import RATE
 
 
 class JointCoordinate(NamedTuple):

@@ -42,9 +42,10 @@ from trsim.elements.frames import (
 )
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.errors import ScenarioError
-from trsim.fields import Function, Spec, Unit, point
+from trsim.fields import Spec, Unit, point
 from trsim.kernels.columns import f8, i8
 from trsim.kernels.lazy import internal
+from trsim.varying import Function
 
 
 class Supply(Spec):

@@ -13,10 +13,11 @@ from typing import ClassVar
 
 from trsim.elements.contract import Channel, Element, Pair, Row, measured
 from trsim.errors import ScenarioError
-from trsim.fields import Function, Spec
+from trsim.fields import Spec
 from trsim.kernels.columns import i8, run
 from trsim.laws.functions import value, value_and_rate
 from trsim.units import unit
+from trsim.varying import Function
 
 
 class Formula(Spec):

@@ -25,8 +25,9 @@ from trsim.elements.sprung import (
     store,
     tension,
 )
-from trsim.fields import Flag, Function, Unit, point
+from trsim.fields import Flag, Unit, point
 from trsim.kernels.columns import f8
+from trsim.varying import Function
 
 
 class Spring(Sprung):
