@@ -49,7 +49,7 @@ from trsim.elements.frames import (
     scaled,
 )
 from trsim.elements.friction_law import Friction
-from trsim.elements.surfaces import MOST, check, check_sizes, coordinates, counts, gear, lead
+from trsim.elements.sliding import MOST, check, check_sizes, coordinates, counts, gear, lead
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import f8, i8, run
 from trsim.kernels.lazy import internal
