@@ -343,6 +343,11 @@ FIXED = {
                         "eccentricity_x": "m", "eccentricity_y": "m",
                         "eccentricity_x_rate": "m/s", "eccentricity_y_rate": "m/s",
                         "force": "N"},
+    "seal": {"normal_force": "N", "friction_force": "N", "compression": "m",
+             "contact_length": "m", "force": "N"},
+    "surface_contact": {"normal_force": "N", "friction_force": "N", "contact_force": "N",
+                        "penetration": "m", "penetration_rate": "m/s", "sliding_speed": "m/s",
+                        "place": "m", "force": "N"},
 }  # fmt: skip
 # seen in the scene above
 DEPENDS = {

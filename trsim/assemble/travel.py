@@ -12,9 +12,10 @@ from trsim.assemble.instances import Instance
 from trsim.assemble.switches import CHANNEL, LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
-# TWIST: an angle about axes that may lean apart; TRAIN: two angles, each times a radius
-UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST, TRAIN = range(7)
-RATE_OF = 8  # added to a kind: the rate of such a quantity
+# TWIST: an angle about axes that may lean apart; TRAIN: two angles, each times a radius; SURFACE:
+# the distance from a surface; EDGE: the larger of the strokes of both ends of a line
+UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST, TRAIN, SURFACE, EDGE = range(9)
+RATE_OF = 9  # added to a kind: the rate of such a quantity
 KINDS = {
     "": UNKNOWN,
     "arc": UNKNOWN,
@@ -23,8 +24,10 @@ KINDS = {
     "distance": DISTANCE,
     "twist": TWIST,
     "train": TRAIN,
+    "surface": SURFACE,
+    "edge": EDGE,
 }
-UNBOUNDED = (UNKNOWN, TWIST, TRAIN)  # kinds whose rates have no bound
+UNBOUNDED = (UNKNOWN, TWIST, TRAIN, SURFACE, EDGE)  # kinds whose rates have no bound
 
 
 def travels(instances: list[Instance], contacts: list[int], switches: Switches) -> dict[str, Any]:

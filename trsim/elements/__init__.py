@@ -55,6 +55,8 @@ ELEMENTS = {
     "ball_spring": "forces",
     "gear_mesh": "forces",
     "limit_stop": "forces",
+    "surface_contact": "forces",
+    "seal": "forces",
     "joint_friction": "forces",
     "sync_shaft": "forces",
     "reaction": "sensors",

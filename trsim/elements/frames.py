@@ -42,6 +42,20 @@ class TwoAngles(Pair):
     c_2: f8
 
 
+class OnSurface(TwoPoints):
+    """Of an element between a surface of body i and a ball around a point of body j."""
+
+    ball: f8  # m, its radius; 0 of a point
+    sharp: f8  # m: how its distance from the surface bends, see laws/surfaces.py
+    reach: f8
+
+
+class Edge(TwoPoints):
+    """Of an element between a plane of body i and a straight line of body j from its point on."""
+
+    length: f8  # m
+
+
 def points(at, i, j, p, q, coordinate=-1):
     """These columns, of the points p of body i and q of body j as drawn."""
     return {

@@ -114,6 +114,27 @@ def normal_force(d, d_dot, d_dot0, pair):
 
 
 @internal
+def impact_force(d, d_dot, pair):
+    """Normal force of a contact whose damper fades in with depth, whatever the impact was.
+
+        F = max(0, K d^n + c smoothstep(d / ramp) d')        d > 0, otherwise 0
+
+    Parameters
+    ----------
+    d, d_dot : float     penetration, m, and its rate, m/s
+    pair                 as of `elastic`, with `damping` c, N*s/m, and `ramp`, m; > 0
+
+    Returns
+    -------
+    float                force, N; the function IMPACT of commercial programs, with the damper of
+                         its STEP: d at x1 - x, d' = -x'
+    """
+    if d <= 0.0:
+        return 0.0
+    return max(0.0, elastic(d, pair) + pair.damping * smoothstep(d / pair.ramp) * d_dot)
+
+
+@internal
 def ramped_damping(pen, pen_dot, k, c, ramp):
     """Force of a stop or seat: a linear spring whose damper fades in over the first ramp metres.
 
@@ -344,6 +365,20 @@ def cylinder_stiffness(width, of_i, of_j):
     if width <= 0.0:
         raise ValueError(f"the bearing width must be positive, got {width} m")
     return pi * width / (2.0 * sqrt(2.0) * _compliance(of_i, of_j))
+
+
+def ball_stiffness(radius, curvature, of_i, of_j):
+    """Hertz stiffness K of F = K d^1.5 of a ball on a surface that is alike in all directions.
+
+        K = 4 / (3 (s_i + s_j)) / sqrt(1 / R + curvature)
+
+    curvature: of the surface, 1/m: 0 of a plane, 1 / R_i of a ball, -1 / R_i of a hollow one; of_i,
+    of_j: E and nu of both.
+    Raises ValueError where the ball does not fit.
+    """
+    if radius <= 0.0 or 1.0 / radius + curvature <= 0.0:
+        raise ValueError(f"a ball of radius {radius:g} m does not fit there")
+    return 4.0 / (3.0 * _compliance(of_i, of_j)) / sqrt(1.0 / radius + curvature)
 
 
 def hertz_peak(m, K, n, v):

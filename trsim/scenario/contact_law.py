@@ -6,15 +6,15 @@ stiffness: internal    Hertz, journal in bearing    K = 4/(3 (s_i + s_j)) sqrt(R
            a number    K in N/m^1.5                 s = (1 - nu^2)/E
 """
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
-from annotated_types import Gt, Interval
+from annotated_types import Ge, Gt, Interval
 from pydantic import model_validator
 
 from trsim.elements.friction_law import Friction
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
-from trsim.laws.contact import cylinder_stiffness, damping_factor, hertz_stiffness
+from trsim.laws.contact import ball_stiffness, cylinder_stiffness, damping_factor, hertz_stiffness
 
 Modulus = Annotated[float, Gt(0), Unit("Pa")]
 Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
@@ -26,7 +26,21 @@ STIFFNESS_NEEDS = {
     "internal": ("bearing_radius", "youngs_modulus", "poisson"),
     "paper": ("bearing_radius", "youngs_modulus", "poisson"),
     "cylinder": ("bearing_radius", "width", "youngs_modulus", "poisson"),
+    "hertz": ("youngs_modulus", "poisson"),
 }
+# what a law of the normal force cannot do without, and what is of no use to it
+NORMAL_NEEDS = {"impact": ("damping", "ramp")}
+NOT_OF = {"impact": ("restitution",)}
+
+
+class Normal(NamedTuple):
+    """The numbers of a normal force."""
+
+    stiffness: float  # N/m^exponent
+    exponent: float
+    chi: float  # of laws of restitution
+    damping: float  # N*s/m, of `impact`
+    ramp: float  # m; 0 of laws of restitution
 
 
 def _needs(spec: Any, what: str, keys: tuple[str, ...]) -> None:
@@ -47,15 +61,17 @@ class ContactLaw(Spec):
     poisson                 Poisson's ratio of the bearing, and of the journal unless given
     journal_youngs_modulus  of the journal
     journal_poisson         Poisson's ratio of the journal
-    restitution             speed after an impact over speed before
+    restitution             speed after an impact over speed before; of all laws but impact
+    damping                 of impact, where its ramp is over
+    ramp                    of impact: penetration over which the damping fades in
     slowest_impact          floor of the remembered impact speed
     friction                along the surfaces
     """
 
     type: ClassVar[str] = "contact_law"
-    normal: Literal["lankarani_nikravesh", "hunt_crossley", "flores", "identified"]
+    normal: Literal["lankarani_nikravesh", "hunt_crossley", "flores", "identified", "impact"]
     stiffness: Annotated[
-        Literal["internal", "paper", "cylinder"] | Annotated[float, Gt(0)], Unit("N/m^1.5")
+        Literal["internal", "paper", "cylinder", "hertz"] | Annotated[float, Gt(0)], Unit("N/m^1.5")
     ] = "internal"
     exponent: Annotated[float, Interval(ge=1, le=3), Unit("-")] = 1.5
     bearing_radius: Length | None = None
@@ -64,24 +80,58 @@ class ContactLaw(Spec):
     poisson: Poisson | None = None
     journal_youngs_modulus: Modulus | None = None
     journal_poisson: Poisson | None = None
-    restitution: Annotated[float, Interval(ge=0, le=1), Unit("-")]
+    restitution: Annotated[float, Interval(ge=0, le=1), Unit("-")] | None = None
+    damping: Annotated[float, Ge(0), Unit("N*s/m")] | None = None
+    ramp: Annotated[float, Gt(0), Unit("m")] | None = None
     slowest_impact: Speed = 0.01
     friction: Friction = Friction()
 
     @model_validator(mode="after")
     def complete(self) -> "ContactLaw":
         _needs(self, f"stiffness {self.stiffness}", STIFFNESS_NEEDS.get(str(self.stiffness), ()))
+        _needs(self, f"normal {self.normal}", NORMAL_NEEDS.get(self.normal, ("restitution",)))
+        for key in NOT_OF.get(self.normal, ("damping", "ramp")):
+            if getattr(self, key) is not None:
+                raise ScenarioError(f"{key} is no number of normal {self.normal}", "", (key,))
         return self
+
+    @property
+    def materials(self) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+        """Young's modulus and Poisson's ratio of the bearing, or surface, and of the journal."""
+        E_i, nu_i = self.youngs_modulus, self.poisson
+        nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
+        return (E_i, nu_i), (self.journal_youngs_modulus or E_i, nu_j)
+
+    def on_surface(self, radius: float, curvature: float | None) -> Normal:
+        """The numbers of a ball on a surface; curvature: as of `ball_stiffness`, None where it is
+        not the same in all directions."""
+        if isinstance(self.stiffness, float):
+            K, exponent = self.stiffness, self.exponent
+        elif self.stiffness != "hertz":
+            what = f"stiffness {self.stiffness} is that of a journal in its bearing"
+            raise ScenarioError(what, "give a number, or `hertz` of a ball", ("contact",))
+        elif curvature is None or radius == 0.0:
+            what = "stiffness hertz is that of a ball on a plane or on another ball"
+            raise ScenarioError(what, "give a number, in N/m^1.5", ("contact",))
+        else:
+            K, exponent = ball_stiffness(radius, curvature, *self.materials), 1.5
+        if self.normal == "impact":
+            return Normal(K, exponent, 0.0, float(self.damping or 0.0), float(self.ramp or 0.0))
+        return Normal(K, exponent, damping_factor(self.normal, self.restitution), 0.0, 0.0)
 
     def normal_numbers(self, c: float) -> tuple[float, float, int, float, float]:
         """K, exponent, form, chi of the law; and the Hertz stiffness it has at a light touch.
 
         c: radial clearance, m.
         """
-        E_i, nu_i = bearing = self.youngs_modulus, self.poisson
-        nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
-        journal = self.journal_youngs_modulus or E_i, nu_j
+        if self.normal == "impact":
+            what = "normal impact is no law of a clearance joint"
+            raise ScenarioError(what, "take one with a restitution", ("contact",))
+        bearing, journal = self.materials
         chi = damping_factor(self.normal, self.restitution)
+        if self.stiffness == "hertz":
+            what = "stiffness hertz is that of a ball on a surface"
+            raise ScenarioError(what, "of a journal in its bearing take `internal`", ("contact",))
         if isinstance(self.stiffness, float):
             return self.stiffness, self.exponent, 0, chi, self.stiffness
         if self.stiffness == "cylinder":

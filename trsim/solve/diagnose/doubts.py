@@ -1,6 +1,7 @@
 """What speaks against believing a run: of its start and of how it went, each with its numbers.
 
 start      a position or a velocity is not the one that was given
+overlaps   at the start, which throw bodies apart                              overlaps.py
 contacts   pressed in by more than their law is made for: a half width of the contact of half the
            radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
 bars       strained by more than a linear law holds                                    strained.py
@@ -40,6 +41,7 @@ from trsim.solve.diagnose.chance import GIVEN, of_extremes, too_much_given
 from trsim.solve.diagnose.crossed import of_branches
 from trsim.solve.diagnose.faint import of_vibrations
 from trsim.solve.diagnose.mesh_error import of_meshes
+from trsim.solve.diagnose.overlaps import of_overlaps
 from trsim.solve.diagnose.sizes import of_sizes
 from trsim.solve.diagnose.skipped import unread
 from trsim.solve.diagnose.strained import of_bars
@@ -74,6 +76,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
     return (
         *unread(scenario),
         *of_start(scenario, mechanism, outcome.start),
+        *of_overlaps(mechanism, outcome.start),
         *of_contacts(scenario, mechanism, outcome.peaks),
         *of_elements(scenario, mechanism, outcome.peaks),
         *of_meshes(scenario, mechanism, outcome.bent),
@@ -189,13 +192,13 @@ def of_elements(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
     model, column = mechanism.model, {c.name: c.start for c in mechanism.columns}
     vectors = model.vector.tolist()
 
-    def largest(channel: str) -> tuple[float, float]:
-        """The largest size of a channel, and when; nothing of one that is not recorded."""
+    def largest(channel: str, signed: bool = False) -> tuple[float, float]:
+        """The largest size of a channel, or value, and when; 0 of one that is not recorded."""
         start = column.get(channel, -1)
         if start in vectors:
             start = model.n_out + vectors.index(start)
         high, at, low, then = peaks[start, :4].tolist() if start >= 0 else (0.0,) * 4
-        return (high, at) if high >= -low else (-low, then)
+        return (high, at) if signed or high >= -low else (-low, then)
 
     for instance in mechanism.instances:
         entries = getattr(scenario, instance.section, {})

@@ -10,6 +10,10 @@ With d the separation of their points p_i and p_j, and u = R_i^T d what frame i 
                                                      + k^2 (1 + k) Omega^2 / 2
                Omega = omega_i + omega_j,  k = 1 / cos(tilt / 2) of its axes  relative_angle.py
     train      |c_1| and |c_2| times those of two angles                      gear_mesh.py
+    surface    |g'| <= |u'|                 -|u''| - |u'|^2 / (sharp + s) <= g''
+               g = ball - s                      g'' <= |u''| + |u'|^2 / (reach - s)   surfaces.py
+    edge       |g'| <= that of one end + Omega l         g'' >= likewise; it may turn round at once,
+               and has no bound above                                                  seal.py
 
     |u''| <= |d''| + 2 omega_i |d'| + (alpha_i + omega_i^2) |d|
     |d''| <= |r_j'' - r_i''| + (alpha_i + omega_i^2) |p_i| + (alpha_j + omega_j^2) |p_j|
@@ -28,9 +32,12 @@ from math import acos, comb, cos, inf, pi, sqrt
 import numpy as np
 
 from trsim.assemble.dense import inverse
-from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, TRAIN, TWIST, UNKNOWN
+from trsim.assemble.equations import call_one
+from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, EDGE, SURFACE, TRAIN, TWIST, UNKNOWN
 from trsim.elements.contract import Pair
 from trsim.elements.frames import (
+    Edge,
+    OnSurface,
     TwoAngles,
     arm,
     centripetal,
@@ -53,6 +60,7 @@ from trsim.solve.march.calls import (
 from trsim.solve.methods.displacements import first_of
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
+NARROW = 0.1  # of how far a place is from where another is as near: for bounds of how it bends
 MOST_LEAN = 1.5  # rad: half of what axes may lean apart by where their angle has bounds
 SAFETY, SAFE_RATE = 2.0, 1.25  # of accelerations and of rates taken from the stages
 SEEN = (0, 4, 8, 10, 12)  # which of DOP853's: at 0, 0.28, 0.65, 0.86 and 1 of the step
@@ -230,7 +238,18 @@ def spread(s, r, b, what, sign, part):
     _, p_i, _, p_j = two_points(s, e)
     round_i, round_j = bend_i + spin_i * spin_i, bend_j + spin_j * spin_j
     bend = away + round_i * sqrt(dot(p_i, p_i)) + round_j * sqrt(dot(p_j, p_j))
-    return from_points(s, what, sign, length, bend, of_i)
+    return over_edge(s, what, sign, from_points(s, what, sign, length, bend, of_i), of_i, of_j)
+
+
+@internal
+def over_edge(s, what, sign, bounds, of_i, of_j):
+    """The bounds of one end of a line, for both; of anything else as they are."""
+    if what[0] != EDGE:
+        return bounds
+    turn, bend = of_angle(of_i, of_j)
+    length = Edge(s, what[1]).length
+    once = bounds[0] + turn * length
+    return once, inf if sign < 0.0 else bounds[1] + (bend + turn * turn) * length
 
 
 @internal
@@ -283,6 +302,15 @@ def from_points(s, what, sign, length, bend, of_i):
         if least <= 0.1 * size:
             return fastest, inf
         curved += fastest * fastest / least
+    if kind == SURFACE:
+        own, way = OnSurface(s, e), fastest * length
+        call_one(s, s.gaps, 0.0, e)
+        away = own.ball - s.gap[e, 0]
+        far = own.reach - away if sign < 0.0 else own.sharp + away  # from where it has no bend
+        if far < inf:
+            if far - way <= NARROW * far:
+                return fastest, inf
+            curved += fastest * fastest / (far - way)
     return fastest, curved
 
 
@@ -415,4 +443,5 @@ def spread_at_stages(s, r, b, what, sign):
         two = TwoAngles(s, e)
         of_2 = of_angle(at_stages(s, r, b, two.i_2), at_stages(s, r, b, two.j_2))
         return of_train(s, e, of_angle(of_i, of_j), of_2)
-    return from_points(s, what, sign, b.h, apart_at_stages(s, b, e, of_i, of_j), of_i)
+    bounds = from_points(s, what, sign, b.h, apart_at_stages(s, b, e, of_i, of_j), of_i)
+    return over_edge(s, what, sign, bounds, of_i, of_j)

@@ -1,0 +1,357 @@
+"""Seal: a soft strip along a line of body j that is pressed against a plane of body i.
+
+    h(u) = n . (r_j + R_j (a + u (b - a)) - r_i - p_i)      of the line's places from the plane
+    x    = height - h                                       compression, 0 <= u <= 1
+    q    = q_0 (x / x_0)^e                                  load per length, N/m, where x > 0
+    F_n  = L (integral of q du) n                           on body j, at its own centre of pressure
+    F_d  = L sum w q c x' n,   F_t = -L sum w q mu g(|v_t|) v_t / |v_t|
+
+The elastic load is integrated as it is, over the part of the line that is pressed: it depends on
+its length alone, however the contact breaks into patches.  Damping and friction are summed over
+Gauss's places on that part, or all of it over `springs` equal pieces of the line.  Forces act where
+the line's places are seen on the plane, on both bodies alike.
+"""
+
+from math import sqrt
+from typing import Annotated, ClassVar
+
+from annotated_types import Ge, Gt, Le
+from pydantic import model_validator
+
+from trsim.elements.contract import (
+    CONTACTS,
+    FLIGHT,
+    FRICTION,
+    IMPACTS,
+    Channel,
+    Contact,
+    Element,
+    Reach,
+    Row,
+    Turning,
+    kernel,
+    measured,
+)
+from trsim.elements.frames import (
+    Edge,
+    arm,
+    dot,
+    minus,
+    plus,
+    point,
+    points,
+    push_apart,
+    scaled,
+    velocity,
+)
+from trsim.errors import ScenarioError
+from trsim.fields import Spec, Unit, direction, vector
+from trsim.fields import point as place
+from trsim.kernels.columns import V3, f8, i8
+from trsim.kernels.lazy import internal
+from trsim.laws.friction import modified_coulomb
+from trsim.laws.seal import NODES, WEIGHTS, line_load, pressed_part
+
+MOST = 1000  # springs
+
+
+class SealLine(Spec):
+    """A straight line of a body.
+
+    body   the body
+    start  one end, as drawn
+    end    the other one, as drawn
+    """
+
+    type: ClassVar[str] = "line"
+    body: str
+    start: place("m")
+    end: place("m")
+
+
+class SealPlane(Spec):
+    """A plane of a body.
+
+    body    the body
+    at      a point of the plane, as drawn
+    normal  to the side of the seal, as drawn; turns with the body
+    """
+
+    type: ClassVar[str] = "plane"
+    body: str
+    at: place("m")
+    normal: vector("-")
+
+
+class Seal(Spec):
+    """A seal along a line, pressed against a plane.
+
+    line         along which it lies
+    against      the plane it is pressed against
+    height       of the seal above its line where nothing presses it
+    load         per length, at the compression `at`
+    at           compression at which it has that load
+    exponent     of the compression
+    damping      part of the load that is added per speed of compression
+    friction     coefficient of friction
+    full_from    sliding speed from which friction is full
+    springs      how many equal springs take its place; none: the load is integrated
+    """
+
+    type: ClassVar[str] = "seal"
+    line: SealLine
+    against: SealPlane
+    height: Annotated[float, Ge(0), Unit("m")] = 0.0
+    load: Annotated[float, Gt(0), Unit("N/m")]
+    at: Annotated[float, Gt(0), Unit("m")]
+    exponent: Annotated[float, Ge(1), Le(5), Unit("-")] = 1.0
+    damping: Annotated[float, Ge(0), Unit("s/m")] = 0.0
+    friction: Annotated[float, Ge(0), Unit("-")] = 0.0
+    full_from: Annotated[float, Gt(0), Unit("m/s")] = 1e-3
+    springs: Annotated[int, Gt(0), Le(MOST)] | None = None
+
+    @model_validator(mode="after")
+    def some_line(self):
+        if self.line.start == self.line.end:
+            raise ScenarioError("the line has no length", "give two ends", ("line", "end"))
+        if not any(self.against.normal):
+            raise ScenarioError("`normal` must not be zero", "", ("against", "normal"))
+        return self
+
+
+class Own(Edge):
+    """Of one instance; the line begins at p_j."""
+
+    axis: V3  # n in the axes of body i
+    along: V3  # from one end to the other, in the axes of body j
+    springs: i8  # 0: integrated
+    height: f8
+    load: f8  # N/m
+    at: f8
+    exponent: f8
+    damping: f8
+    friction: f8
+    full_from: f8
+
+
+def pack(name, spec, at):
+    line, plane = spec.line, spec.against
+    if line.body == plane.body:
+        what = f"line and plane are both on '{line.body}'"
+        raise ScenarioError(what, "name two different bodies", ("line", "body"))
+    i = at.body(plane.body, "against", "body", near=plane.at, off=1.0)
+    j = at.body(line.body, "line", "body", near=line.start, off=1.0)
+    across = tuple(q - p for p, q in zip(line.start, line.end, strict=True))
+    length = sqrt(sum(c * c for c in across))
+    at.local(j, line.end)
+    own = Own.packed(
+        spec, **points(at, i, j, plane.at, line.start), axis=at.axes(i, direction(plane.normal)),
+        along=at.axes(j, across), length=length, springs=spec.springs or 0,
+    )  # fmt: skip
+    stiffness = spec.load * length / spec.at**spec.exponent
+    return Row(*own, Contact(stiffness, spec.exponent, float("inf"), 0.0, 0.0), travel="edge")
+
+
+# --- kernels -----------------------------------------------------------------------------
+
+
+@internal
+def ends(scene, e):
+    """n, the arm of the line's beginning on body j, the line, both in world axes, and compression
+    at both ends."""
+    X, own = scene.X, Own(scene, e)
+    n, p_j, along = arm(X, own.i, own.axis), arm(X, own.j, own.p_j), arm(X, own.j, own.along)
+    d = minus(point(X, own.j, p_j), point(X, own.i, arm(X, own.i, own.p_i)))
+    x_0 = own.height - dot(n, d)
+    return n, p_j, along, x_0, x_0 - dot(n, along)
+
+
+@internal
+def meets(scene, e, n, p_j, compression):
+    """A place of the line, of arm p_j, as seen on the plane: its arms on both bodies, the speed of
+    compression and the sliding velocity there."""
+    X, V, own = scene.X, scene.V, Own(scene, e)
+    c_j = minus(p_j, scaled(own.height - compression, n))
+    c_i = minus(point(X, own.j, c_j), (X[own.i, 0], X[own.i, 1], X[own.i, 2]))
+    v = minus(velocity(V, own.j, c_j), velocity(V, own.i, c_i))
+    rate = -dot(n, v)
+    return c_i, c_j, rate, plus(v, scaled(rate, n))
+
+
+@internal
+def lossy(own, q, rate, v_t, n):
+    """Damping and friction on body j of a load q, N, and their power."""
+    speed = sqrt(dot(v_t, v_t))
+    slow = modified_coulomb(q, speed, own.friction, 0.0, own.full_from)
+    damp = max(q * own.damping * rate, -q)
+    f = scaled(damp, n)
+    if speed > 0.0:
+        f = plus(f, scaled(slow / speed, v_t))
+    return f, -damp * rate, slow * speed
+
+
+@internal
+def load_at(own, x):
+    """Load per length, N/m."""
+    return own.load * (x / own.at) ** own.exponent if x > 0.0 else 0.0
+
+
+@internal
+def lump(scene, e, u, weight):
+    """Arms, force on body j, its power as damping and as friction, of the part `weight` of the line
+    at u; with its elastic force where that is a sum."""
+    own = Own(scene, e)
+    n, p_j, along, x_0, x_1 = ends(scene, e)
+    x = x_0 + u * (x_1 - x_0)
+    q = own.length * weight * load_at(own, x)
+    c_i, c_j, rate, v_t = meets(scene, e, n, plus(p_j, scaled(u, along)), x)
+    f, damped, rubbed = lossy(own, q, rate, v_t, n)
+    if own.springs > 0:
+        f = plus(f, scaled(q, n))
+    return c_i, c_j, f, damped, rubbed
+
+
+@internal
+def place_of(own, low, high, k):
+    """The k-th place of a sum along the line, and its weight."""
+    if own.springs > 0:
+        return (k + 0.5) / own.springs, 1.0 / own.springs
+    return low + (high - low) * NODES[k], (high - low) * WEIGHTS[k]
+
+
+@internal
+def many(own):
+    """Places of a sum along the line."""
+    return own.springs if own.springs > 0 else len(NODES)
+
+
+@kernel
+def force(t, scene, e):
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    n, p_j, along, x_0, x_1 = ends(scene, e)
+    low, high = pressed_part(x_0, x_1)
+    if low == high:
+        return
+    if own.springs == 0:
+        whole, first, _ = line_load(x_0 / own.at, x_1 / own.at, own.exponent)
+        u = first / whole if whole > 0.0 else 0.0
+        c_i, c_j, _, _ = meets(scene, e, n, plus(p_j, scaled(u, along)), x_0 + u * (x_1 - x_0))
+        push_apart(scene.F, own.i, c_i, own.j, c_j, scaled(own.load * own.length * whole, n))
+        if own.damping == 0.0 and own.friction == 0.0:
+            return
+    for k in range(many(own)):
+        u, weight = place_of(own, low, high, k)
+        c_i, c_j, f, damped, rubbed = lump(scene, e, u, weight)
+        push_apart(scene.F, own.i, c_i, own.j, c_j, f)
+        scene.zd[IMPACTS] += damped
+        scene.zd[FRICTION] += rubbed
+
+
+@kernel
+def gap(t, scene, e):
+    n, p_j, along, x_0, x_1 = ends(scene, e)
+    u, x = (0.0, x_0) if x_0 >= x_1 else (1.0, x_1)
+    _, _, rate, _ = meets(scene, e, n, plus(p_j, scaled(u, along)), x)
+    scene.gap[e, 0], scene.gap[e, 1] = x, rate
+
+
+@kernel
+def energy(t, scene, e):
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    _, _, _, x_0, x_1 = ends(scene, e)
+    if own.springs == 0:
+        _, _, stored = line_load(x_0 / own.at, x_1 / own.at, own.exponent)
+        scene.E[CONTACTS] += own.load * own.length * own.at * stored
+        return
+    for k in range(own.springs):
+        u, weight = place_of(own, 0.0, 1.0, k)
+        x = x_0 + u * (x_1 - x_0)
+        scene.E[CONTACTS] += (
+            own.length * weight * load_at(own, x) * max(x, 0.0) / (own.exponent + 1.0)
+        )
+
+
+@measured
+def measure(t, scene, e, o):
+    out, own = scene.out, Own(scene, e)
+    n, _, _, x_0, x_1 = ends(scene, e)
+    low, high = pressed_part(x_0, x_1)
+    total = scaled(0.0, n)
+    if own.phase != FLIGHT and high > low:
+        if own.springs == 0:
+            whole, _, _ = line_load(x_0 / own.at, x_1 / own.at, own.exponent)
+            total = scaled(own.load * own.length * whole, n)
+        for k in range(many(own)):
+            u, weight = place_of(own, low, high, k)
+            _, _, f, _, _ = lump(scene, e, u, weight)
+            total = plus(total, f)
+    f_n = dot(n, total)
+    f_t = minus(total, scaled(f_n, n))
+    out[o], out[o + 1] = f_n, sqrt(dot(f_t, f_t))
+    out[o + 2], out[o + 3] = max(x_0, x_1), (high - low) * own.length
+    for c in range(3):
+        out[o + 4 + c] = total[c]
+
+
+# --- what others ask -----------------------------------------------------------------------
+
+
+def both_ends(row):
+    """The places where it may push body j; of body i none is known before."""
+    own = Own.of(row)
+    end = plus(own.p_j, own.along)
+    return (own.i, None), (own.j, own.p_j), (own.j, end)
+
+
+def reach(row):
+    own = Own.of(row)
+    pair = (own.i, own.j)
+    middle = plus(own.p_j, scaled(0.5, own.along))  # the whole line lies as its middle does
+    return Reach(forces=((own.i, own.axis),), places=((own.j, middle, pair),))
+
+
+def turning(row):
+    """The plane is carried along by its body, the line by its own."""
+    own = Own.of(row)
+    return Turning(frames=(own.i, own.j))
+
+
+ELEMENT = Element(
+    key="seal",
+    section="forces",
+    spec=Seal,
+    pack=pack,
+    acts_at=both_ends,
+    reach=reach,
+    channels=(
+        Channel("normal_force", "N", "across the plane, damping included; never negative", least=0),
+        Channel("friction_force", "N", "size of the friction", least=0.0),
+        Channel("compression", "m", "the largest along the line; minus the free gap otherwise"),
+        Channel("contact_length", "m", "how much of the line is pressed", least=0.0),
+        Channel("force", "N", "on the body of the line, world axes", 3),
+    ),
+    turning=turning,
+    loads={"normal_force": "contact force"},
+    kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},
+    example="""
+planar: false
+bodies:
+  door: {mass: 20 kg, inertia: [2, 2, 4], at: [0.4, 0, 1], velocity: [0, -0.2, 0]}
+joints:
+  rail: {type: prismatic, bodies: [ground, door], at: [0.4, 0, 1], axis: [0, 1, 0]}
+forces:
+  edge:
+    type: seal
+    line: {body: door, start: [0.8, 0, 0.1], end: [0.8, 0, 1.9]}
+    against: {body: ground, at: [0, -10 mm, 0], normal: [0, 1, 0]}
+    height: 4 mm
+    load: 130 N/m
+    at: 4 mm
+    exponent: 1.2
+solver: {end: 0.2 s}
+""",
+)

@@ -1,0 +1,534 @@
+"""Surface contact: a ball, a roller or a point of body j against a surface of body i.
+
+    s, n              how far the centre is from the surface, and the way from it   laws/surfaces.py
+    d   = r - s       penetration; r is the radius of the ball, 0 of a point
+    d'  = -n . v      v: the centre's velocity against body i at the same place, which turns n too
+    F_n = f(d, d')    normal force on body j, along n                                laws/contact.py
+    F_t               friction on body j, against v_t                               laws/friction.py
+    v_t = v_j - v_i - n (n . (v_j - v_i))     at c, the centre less s n, of both bodies
+
+Both forces act at c, on both bodies alike, so that the pair adds no moment.  Bristles bend in two
+directions across n: one in the plane of the profile, t = n x z, and z.  Rolling and spinning are
+slowed by moments on both bodies, b_r and b_s the levers of the law, w = omega_j - omega_i:
+
+    M = -F_n (b_r g(r |w_t|) w_t / |w_t| + b_s g(r |w_n|) sign(w_n) n),     w_n = w . n
+
+g is the friction law's part of full friction at a speed.  In flight there is no force whatever the
+gap; a touch is located and latches the approach speed, as in a clearance joint.
+"""
+
+from math import inf, sqrt
+from typing import Annotated, Any, ClassVar, Literal
+
+from annotated_types import Ge, Gt
+from pydantic import model_validator
+
+from trsim.elements.contract import (
+    CONTACT,
+    CONTACTS,
+    FLIGHT,
+    FRICTION,
+    IMPACTS,
+    WHOLE,
+    Channel,
+    Contact,
+    Element,
+    Reach,
+    Row,
+    Turning,
+    kernel,
+    measured,
+)
+from trsim.elements.frames import (
+    OnSurface,
+    arm,
+    at_both,
+    carried,
+    cross,
+    dot,
+    minus,
+    plus,
+    points,
+    push_apart,
+    scaled,
+    velocity,
+)
+from trsim.elements.placed import Placed
+from trsim.errors import ScenarioError
+from trsim.fields import Flag, Spec, Unit, point, vector
+from trsim.kernels.columns import V3, f8, i8, run
+from trsim.kernels.lazy import internal
+from trsim.laws.contact import elastic, impact_force, normal_force, stored
+from trsim.laws.friction import (
+    CODES,
+    N_PARAMETERS,
+    beyond,
+    branch_of,
+    friction_force,
+    neighbour,
+    on_branch,
+    part_of_bristle,
+)
+from trsim.laws.profiles import Flaw, profile, smooth
+from trsim.laws.surfaces import CYLINDER, PLANE, SHAPES, SPHERE, away
+
+CORNERED, STICKING = CODES["modified_coulomb"], CODES["sticking"]
+DEEP = 0.2  # of the radius of a ball: deeper than that it is no longer one that touches a surface
+SIDE = 1e-6  # of the size of a profile: a centre so near to it is on no side
+OTHERS = {"plane": (), "sphere": ("radius",), "cylinder": ("radius",), "profile": ("points",)}
+ONLY_OF = {
+    "radius": ("sphere", "cylinder"),
+    "hollow": ("sphere", "cylinder", "profile"),
+    "points": ("profile",),
+    "closed": ("profile",),
+    "corner_radius": ("profile",),
+    "smooth": ("profile",),
+}
+SPLINE = 1e-7  # of its size: how far arcs are from a spline through points
+
+
+class Surface(Placed):
+    """A surface of a body; it turns with the body.
+
+    body           the body, or ground
+    shape          plane: through `at`, free on the side of its y axis; sphere around `at`;
+                   cylinder around the z axis; profile: a line in the x-y plane, drawn out along z
+    at             its origin, as drawn; a place, or the name of a point
+    x_axis         direction of its x axis, as drawn
+    y_axis         direction of its y axis, made perpendicular to x
+    radius         of a sphere or a cylinder
+    hollow         whether it is free inside: a bowl, a hole, a slot
+    points         places [x, y] that a profile goes through
+    closed         whether a profile goes on from the last point to the first
+    smooth         whether it is a cubic spline, or straight from one point to the next
+    corner_radius  by which its corners are rounded where it is straight; 0: edges
+    """
+
+    type: ClassVar[str] = "surface"
+    body: str
+    shape: Literal["plane", "sphere", "cylinder", "profile"] = "plane"
+    at: point("m") = (0.0, 0.0, 0.0)
+    x_axis: vector("-") = (1.0, 0.0, 0.0)
+    y_axis: vector("-") = (0.0, 1.0, 0.0)
+    radius: Annotated[float, Gt(0), Unit("m")] | None = None
+    hollow: Flag = False
+    points: tuple[Annotated[tuple[float, float], Unit("m")], ...] | None = None
+    closed: Flag = False
+    smooth: Flag = False
+    corner_radius: Annotated[float, Ge(0), Unit("m")] = 0.0
+
+    @model_validator(mode="after")
+    def of_its_shape(self):
+        for key in OTHERS[self.shape]:
+            if getattr(self, key) is None:
+                raise ScenarioError(f"a {self.shape} needs `{key}`")
+        for key, shapes in ONLY_OF.items():
+            if key in self.model_fields_set and self.shape not in shapes:
+                raise ScenarioError(f"{key} is no number of a {self.shape}", "", (key,))
+        if self.smooth and self.corner_radius:
+            what = "a smooth profile has no corners"
+            raise ScenarioError(what, "leave out `corner_radius` or `smooth`", ("corner_radius",))
+        if self.hollow and self.shape == "profile" and not self.closed:
+            raise ScenarioError("only a closed profile has an inside", "closed: true", ("hollow",))
+        return self
+
+
+class Ball(Spec):
+    """A ball of a body, or a roller whose axis is the z axis of the surface, or a point.
+
+    body    the body
+    at      its centre, as drawn; a place, or the name of a point
+    radius  0 of a point
+    """
+
+    type: ClassVar[str] = "ball"
+    body: str
+    at: point("m")
+    radius: Annotated[float, Ge(0), Unit("m")] = 0.0
+
+
+class SurfaceContact(Spec):
+    """A ball, a roller or a point that meets a surface.
+
+    surface             what it meets
+    ball                what meets it
+    contact             entry of contact_laws; may be left out where there is only one
+    rolling_resistance  lever of the normal force against rolling
+    spinning_friction   lever of the normal force against turning about the normal
+    """
+
+    type: ClassVar[str] = "surface_contact"
+    surface: Surface
+    ball: Ball
+    contact: str | None = None
+    rolling_resistance: Annotated[float, Ge(0), Unit("m")] = 0.0
+    spinning_friction: Annotated[float, Ge(0), Unit("m")] = 0.0
+
+
+class Own(OnSurface):
+    """Of one instance."""
+
+    u_i: V3  # axes of the surface in those of body i
+    w_i: V3
+    a_i: V3
+    shape: i8
+    closed: i8  # 1 of a closed profile
+    profile: i8  # its offset in tab
+    state: i8  # of z: the deflection of bristles along t, that along z behind it; or -1
+    friction_law: i8
+    form: i8  # of the elastic law: that of Hertz
+    radius: f8  # of the surface, m
+    free: f8  # 1, or -1: inside
+    clearance: f8  # read by other forms
+    stiffness: f8
+    exponent: f8
+    chi: f8
+    damping: f8
+    ramp: f8  # 0 of laws that know the impact
+    slowest_impact: f8
+    rolling: f8  # levers, m
+    spinning: f8
+    friction: run(f8, N_PARAMETERS)
+
+
+# --- packing -----------------------------------------------------------------------------
+
+
+def pack(name, spec, at):
+    surface, ball = spec.surface, spec.ball
+    if surface.body == ball.body:
+        what = f"surface and ball are both on '{ball.body}'"
+        raise ScenarioError(what, "name two different bodies", ("ball", "body"))
+    law = at.contact_law(spec.contact)
+    i = at.body(surface.body, "surface", "body", near=surface.at, off=1.0)
+    j = at.body(ball.body, "ball", "body", near=ball.at)
+    frame = surface.frame
+    shaped, curvature = shape_of(spec, at, frame.inside(minus(ball.at, surface.at)))
+    normal = law.on_surface(ball.radius, curvature)
+    code, friction = law.friction.numbers
+    state = bristles(spec, law.friction, friction, at)
+    if (spec.rolling_resistance or spec.spinning_friction) and code in (CODES["none"], STICKING):
+        what = "resistance to rolling and spinning is regularised like sliding friction"
+        raise ScenarioError(what, "take `modified_coulomb`, with `v0` and `v1`", ("contact",))
+    own = Own.packed(
+        normal, **points(at, i, j, surface.at, ball.at), **shaped,
+        u_i=at.axes(i, frame.x), w_i=at.axes(i, frame.y), a_i=at.axes(i, frame.z),
+        ball=ball.radius, state=state, friction_law=code, friction=friction, form=0, clearance=0.0,
+        slowest_impact=law.slowest_impact, rolling=spec.rolling_resistance,
+        spinning=spec.spinning_friction,
+    )  # fmt: skip
+    ramp = law.friction.law == "modified_coulomb"
+    slope = friction[0] / (friction[2] - friction[1]) if ramp else 0.0
+    jump = Own.columns["friction"].at if law.friction.law == "coulomb" else -1
+    contact = Contact(
+        normal.stiffness, normal.exponent, inf, law.slowest_impact, normal.chi, state, slope, jump
+    )
+    states = () if state < 0 else (state, state + 1)
+    return Row(*own, contact, states=states, travel="surface")
+
+
+def bristles(spec, law, numbers, at):
+    """Entries of z with the deflection of bristles, the first of two; -1 where there are none."""
+    if law.law != "sticking":
+        return -1
+    if spec.surface.shape == "sphere":
+        what = "bristles bend along directions of the surface, of which a sphere has none"
+        hint = "let the ball be a part of the other body, or take another friction law"
+        raise ScenarioError(what, hint, ("contact",))
+    size = numbers[1] / numbers[3]
+    first = at.state(size)
+    at.state(size)
+    return first
+
+
+def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
+    """The columns that say what a surface is, and its curvature where Hertz's law has one.
+
+    centre: of the ball, in the axes of the surface.
+    """
+    surface, r = spec.surface, spec.ball.radius
+    code, R = SHAPES[surface.shape], surface.radius or 0.0
+    free = -1.0 if surface.hollow else 1.0
+    shaped = {"shape": code, "radius": R, "free": free, "profile": 0, "closed": 0}
+    if code == PLANE:
+        return {**shaped, "sharp": inf, "reach": inf}, 0.0
+    if code in (SPHERE, CYLINDER):
+        if surface.hollow and r >= R:
+            what = f"a ball of radius {r:g} m does not fit into one of {R:g} m"
+            raise ScenarioError(what, "", ("ball", "radius"))
+        bends = {"sharp": inf, "reach": R} if surface.hollow else {"sharp": R, "reach": inf}
+        return {**shaped, **bends}, free / R if code == SPHERE else None
+    side = int(free) if surface.closed else side_of(surface, centre)
+    try:
+        if surface.smooth:
+            found = smooth(surface.points, surface.closed, side, SPLINE)
+        else:
+            found = profile(surface.points, surface.corner_radius, surface.closed, side)
+    except Flaw as flaw:
+        where = ("points",) if flaw.point is None else ("points", flaw.point)
+        raise ScenarioError(flaw.what, flaw.hint, ("surface", *where)) from None
+    if r == 0.0 and found.sharp == 0.0:
+        what = "a point on an edge has no direction to be pushed in"
+        hint = (
+            "give `corner_radius`, or the ball a `radius`"
+            if surface.closed
+            else ("close the profile and give `corner_radius`, or give the ball a `radius`")
+        )
+        raise ScenarioError(what, hint, ("ball", "radius"))
+    if not found.reach > r:
+        what = f"a ball of radius {r:g} m touches this profile in two places at once somewhere"
+        hint = f"smaller than {found.reach:.4g} m it touches one; or make a contact for each side"
+        raise ScenarioError(what, hint, ("ball", "radius"))
+    offset = len(at.tab)
+    at.tab.extend(found.numbers)
+    body = at.body(surface.body, "surface", "body", near=surface.at, off=1.0)
+    for x, y in (found.outline.min(axis=0), found.outline.max(axis=0)):
+        at.local(body, surface.frame.moved((float(x), float(y), 0.0)))
+    bends = {"sharp": found.sharp, "reach": found.reach}
+    return {**shaped, **bends, "profile": offset, "closed": int(surface.closed)}, None
+
+
+def side_of(surface, centre):
+    """On which side of an open profile the ball is drawn: 1 left, -1 right."""
+    nearest, side, size = inf, 0.0, 0.0
+    x, y = centre[0], centre[1]
+    for (x0, y0), (x1, y1) in zip(surface.points[:-1], surface.points[1:], strict=True):
+        a, b = x1 - x0, y1 - y0
+        length = sqrt(a * a + b * b)
+        size = max(size, length)
+        along = min(max(((x - x0) * a + (y - y0) * b) / (length * length or 1.0), 0.0), 1.0)
+        far = sqrt((x - x0 - along * a) ** 2 + (y - y0 - along * b) ** 2)
+        if far < nearest:
+            nearest, side = far, a * (y - y0) - b * (x - x0)
+    if nearest <= SIDE * size:
+        what = "the centre is drawn on the profile, so nobody knows on which side it is"
+        raise ScenarioError(what, "draw it a radius away", ("ball", "at"))
+    return 1 if side >= 0.0 else -1
+
+
+# --- kernels -----------------------------------------------------------------------------
+
+
+@internal
+def touch(scene, e):
+    """Arms of the centre on both bodies, s, n in world axes, penetration and its rate."""
+    own, X = Own(scene, e), scene.X
+    r_i, p_j, d, v = carried(scene, e)
+    x, y, z = arm(X, own.i, own.u_i), arm(X, own.i, own.w_i), arm(X, own.i, own.a_i)
+    s, m = away(scene.tab, own, (dot(x, d), dot(y, d), dot(z, d)))
+    n = plus(plus(scaled(m[0], x), scaled(m[1], y)), scaled(m[2], z))
+    return r_i, p_j, s, n, own.ball - s, -dot(n, v)
+
+
+@internal
+def slides(scene, e):
+    """The place of contact seen from both centres of mass, n, d, d', v_t and its size."""
+    V, own = scene.V, Own(scene, e)
+    r_i, p_j, s, n, depth, rate = touch(scene, e)
+    c_i, c_j = minus(r_i, scaled(s, n)), minus(p_j, scaled(s, n))
+    v = minus(velocity(V, own.j, c_j), velocity(V, own.i, c_i))
+    v_t = minus(v, scaled(dot(n, v), n))
+    return c_i, c_j, n, depth, rate, v_t, sqrt(dot(v_t, v_t))
+
+
+@internal
+def normal_of(own, depth, rate):
+    """F_n."""
+    if own.ramp > 0.0:
+        return impact_force(depth, rate, own)
+    first = own.impact_speed
+    if first == 0.0:  # not latched yet (UNLOCATED): this approach is the impact
+        first = max(rate, own.slowest_impact)
+    return normal_force(depth, rate, first, own)
+
+
+@internal
+def part_of(own, F_n, speed):
+    """Friction at a speed, N, positive against it; bristles aside."""
+    f = own.friction
+    if own.friction_law == CORNERED and own.branch != WHOLE:
+        return -on_branch(own.branch, F_n, speed, f[0], f[1], f[2])
+    F_t, _ = friction_force(own.friction_law, F_n, speed, 0.0, f)
+    return -F_t
+
+
+@internal
+def friction_of(scene, e, F_n, n, v_t, speed):
+    """Friction on body j, world axes, and the rates of both bristles."""
+    own = Own(scene, e)
+    if own.state < 0:
+        by = -part_of(own, F_n, speed) / speed if speed > 0.0 else 0.0
+        return scaled(by, v_t), 0.0, 0.0
+    f, z = own.friction, arm(scene.X, own.i, own.a_i)
+    t = cross(n, z)
+    if own.shape == PLANE:
+        t = arm(scene.X, own.i, own.u_i)
+    w_t, w_z = scene.z[own.state], scene.z[own.state + 1]
+    F_1, rate_1 = part_of_bristle(F_n, dot(t, v_t), speed, w_t, f)
+    F_2, rate_2 = part_of_bristle(F_n, dot(z, v_t), speed, w_z, f)
+    return plus(scaled(F_1, t), scaled(F_2, z)), rate_1, rate_2
+
+
+@internal
+def resistance(scene, e, F_n, n):
+    """Moment on body j against rolling and spinning, world axes, and its power."""
+    V, own = scene.V, Own(scene, e)
+    i, j, f = own.i, own.j, own.friction
+    w = (V[j, 3] - V[i, 3], V[j, 4] - V[i, 4], V[j, 5] - V[i, 5])
+    spin = dot(n, w)
+    roll = minus(w, scaled(spin, n))
+    size, code = sqrt(dot(roll, roll)), own.friction_law
+    by_roll, _ = friction_force(code, F_n, own.ball * size, 0.0, f)
+    by_spin, _ = friction_force(code, F_n, own.ball * spin, 0.0, f)
+    share = own.rolling * by_roll / (f[0] * size) if size > 0.0 else 0.0
+    m = plus(scaled(share, roll), scaled(own.spinning * by_spin / f[0], n))
+    return m, dot(m, w)
+
+
+@kernel
+def force(t, scene, e):
+    zd, left, own = scene.zd, scene.left, Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    c_i, c_j, n, depth, rate, v_t, speed = slides(scene, e)
+    if own.friction_law == CORNERED and own.branch != WHOLE:
+        left[e] = max(left[e], beyond(own.branch, speed, own.friction[1], own.friction[2]))
+    if depth <= 0.0:
+        return
+    F_n = normal_of(own, depth, rate)
+    F_t, rate_t, rate_z = friction_of(scene, e, F_n, n, v_t, speed)
+    push_apart(scene.F, own.i, c_i, own.j, c_j, plus(scaled(F_n, n), F_t))
+    zd[IMPACTS] -= (F_n - elastic(depth, own)) * rate
+    zd[FRICTION] += dot(F_t, v_t)
+    if own.state >= 0:
+        zd[own.state], zd[own.state + 1] = rate_t, rate_z
+    if own.rolling > 0.0 or own.spinning > 0.0:
+        m, power = resistance(scene, e, F_n, n)
+        for c in range(3):
+            scene.F[own.j, 3 + c] += m[c]
+            scene.F[own.i, 3 + c] -= m[c]
+        zd[FRICTION] += power
+
+
+@kernel
+def gap(t, scene, e):
+    _, _, _, _, scene.gap[e, 0], scene.gap[e, 1] = touch(scene, e)
+
+
+@kernel
+def corners(t, scene, e):
+    out, own = scene.corner, Own(scene, e)
+    out[e, 0] = -1.0
+    if own.friction_law != CORNERED or own.phase != CONTACT:
+        return
+    _, _, _, _, _, _, speed = slides(scene, e)
+    v0, v1, branch = own.friction[1], own.friction[2], own.branch
+    if branch == WHOLE:
+        out[e, 1] = branch_of(speed, v0, v1)
+    else:
+        out[e, 0], out[e, 1] = beyond(branch, speed, v0, v1), neighbour(branch, speed, v0, v1)
+
+
+@kernel
+def energy(t, scene, e):
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    _, _, _, _, depth, _ = touch(scene, e)
+    scene.E[CONTACTS] += stored(depth, own)
+
+
+@measured
+def measure(t, scene, e, o):
+    out, own = scene.out, Own(scene, e)
+    c_i, _, n, depth, rate, v_t, speed = slides(scene, e)
+    F_n, F_t = 0.0, (0.0, 0.0, 0.0)
+    if own.phase != FLIGHT and depth > 0.0:
+        F_n = normal_of(own, depth, rate)
+        F_t, _, _ = friction_of(scene, e, F_n, n, v_t, speed)
+    f = plus(scaled(F_n, n), F_t)
+    d = minus(c_i, arm(scene.X, own.i, own.p_i))
+    out[o], out[o + 1] = F_n, sqrt(dot(F_t, F_t))
+    out[o + 2], out[o + 3] = sqrt(dot(f, f)), depth
+    out[o + 4], out[o + 5] = rate, speed if own.phase == CONTACT else 0.0
+    out[o + 6] = dot(arm(scene.X, own.i, own.u_i), d)
+    out[o + 7] = dot(arm(scene.X, own.i, own.w_i), d)
+    out[o + 8] = dot(arm(scene.X, own.i, own.a_i), d)
+    for c in range(3):
+        out[o + 9 + c] = f[c]
+
+
+# --- what others ask -----------------------------------------------------------------------
+
+
+def reach(row):
+    own = Own.of(row)
+    if own.shape == SPHERE:
+        return Reach(lines=((own.i, own.p_i, own.j, own.p_j),))
+    forces = ((own.i, own.w_i),) if own.shape == PLANE else ((own.i, own.u_i), (own.i, own.w_i))
+    return Reach(forces=forces, places=((own.j, own.p_j, (own.i, own.j)),))
+
+
+def turning(row):
+    """The surface is carried along by its body; friction turns that of the ball."""
+    own = Own.of(row)
+    return Turning(frames=(own.j,), points=((own.i, own.p_i),), axes=((own.i, own.a_i),))
+
+
+def doubts(name, spec, largest):
+    """A ball that was pressed in so deep that it might come out on the other side."""
+    if spec.ball.radius == 0.0:
+        return
+    depth, when = largest(f"{name}.penetration", signed=True)
+    if depth > DEEP * spec.ball.radius:
+        yield (
+            f"forces.{name}: the surface was pressed {depth:.3g} m deep into a ball of radius "
+            f"{spec.ball.radius:.3g} m at {when:.4g} s: the contact is too soft, or the impact too "
+            "fast, for its law to mean anything; take a larger `stiffness`"
+        )
+
+
+ELEMENT = Element(
+    key="surface_contact",
+    section="forces",
+    spec=SurfaceContact,
+    pack=pack,
+    acts_at=at_both,
+    reach=reach,
+    judged=lambda row: Own.of(row).ball > 0.0,
+    doubts=doubts,
+    channels=(
+        Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
+        Channel("friction_force", "N", "size of the friction", least=0.0),
+        Channel("contact_force", "N", "resultant of normal force and friction", least=0.0),
+        Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
+        Channel("penetration_rate", "m/s", "positive while approaching"),
+        Channel("sliding_speed", "m/s", "of the ball on the surface; 0 in flight", least=0.0),
+        Channel("place", "m", "nearest place on the surface, in its axes", 3),
+        Channel("force", "N", "contact force on the body of the ball, world axes", 3),
+    ),
+    turning=turning,
+    picture="stop",
+    loads={"contact_force": "contact force"},
+    kernels={
+        "force": force,
+        "gaps": gap,
+        "corners": corners,
+        "energy": energy,
+        "measure": measure,
+    },
+    example="""
+bodies:
+  ball: {mass: 0.1 kg, inertia: 1.6e-5 kg*m^2, at: [0, 25 mm], velocity: [1 m/s, 0]}
+forces:
+  floor:
+    type: surface_contact
+    surface: {body: ground, shape: plane}
+    ball: {body: ball, at: [0, 25 mm], radius: 20 mm}
+contact_laws:
+  rubber: {normal: impact, stiffness: 1e6, damping: 20 N*s/m, ramp: 0.1 mm,
+           friction: {law: modified_coulomb, coefficient: 0.4, v0: 1e-4 m/s, v1: 1e-3 m/s}}
+gravity: [0, -9.81, 0]
+solver: {end: 0.2 s}
+""",
+)

@@ -1,0 +1,340 @@
+"""A profile as pieces of laws/surfaces.py: corners rounded, and how large a ball fits everywhere.
+
+Where a line turns by the angle 2 a an arc of radius R takes the place of R tan a on both sides of
+the corner.  It is round where the line turns away from the free side, hollow where it turns to it.
+
+The ball through p and q that has the normal n of the line at p has the radius
+
+    |q - p|^2 / (2 n . (q - p))
+
+The least of them over all p and q is the largest ball that touches no second place.
+"""
+
+from math import acos, cos, inf, pi, tan
+from typing import Any, NamedTuple
+
+from trsim.laws.surfaces import EDGE, GROUP, HOLLOW, ROUND, SIZE, STRAIGHT
+
+SAME = 1e-9  # of the size of a profile: places that are one
+PLAIN = 1e-7  # rad: what turns by less goes straight on
+BACK = 1e-6  # rad: what turns by so little less than half a turn turns back on itself
+SAMPLES, LEAST = 1000, 8  # places along a profile, for its reach, and along each piece
+NEXT = 1e-6  # of its size: where one piece ends and the next begins
+FEW = 16  # pieces: they are looked at one by one
+MOST = 20_000  # pieces of a spline
+FLAT = 1e-7  # rad: an arc that turns by less is straight
+LEVEL = 1e-6  # of a distance: what rises so little above the tangent is on it
+
+
+class Flaw(ValueError):
+    """What is wrong with a profile, what helps, and at which of its points."""
+
+    def __init__(self, what: str, hint: str, point: int | None = None) -> None:
+        super().__init__(what)
+        self.what, self.hint, self.point = what, hint, point
+
+
+class Profile(NamedTuple):
+    """A profile as numbers for `tab`, and what bounds how its distance bends."""
+
+    numbers: list[float]
+    sharp: float  # m, least radius of what is round towards the free side: 0 of an edge
+    reach: float  # m, of the largest ball that touches one place only
+    outline: Any  # (n, 2) places along it, m
+
+
+def profile(points: Any, radius: float, closed: bool, side: int) -> Profile:
+    """The pieces of a line through points whose corners are rounded.
+
+    points : (n, 2)      m
+    radius               of its corners, m; 0: edges
+    closed               whether it goes on from the last point to the first
+    side                 1: the free side of an open one is on its left, of a closed one outside;
+                         -1: on its right, or inside
+
+    The pieces of a closed one go clockwise, so that outside is on their left.  Raises Flaw.
+    """
+    import numpy as np
+
+    p = np.array(points, float)
+    size = float(np.linalg.norm(np.ptp(p, axis=0))) if len(p) else 0.0
+    if closed and len(p) > 1 and np.linalg.norm(p[-1] - p[0]) <= SAME * size:
+        p = p[:-1]
+    if len(p) < (3 if closed else 2):
+        raise Flaw(f"{len(p)} points are no profile", "a closed one needs 3, an open one 2")
+    order = np.arange(len(p))
+    if closed:
+        if meets_itself(p):
+            raise Flaw("the profile crosses itself", "give its points in their order round it")
+        if area(p) > 0.0:
+            order = order[::-1]
+    return put_together(p[order], order, radius, closed, side)
+
+
+def area(p: Any) -> float:
+    """Twice the area inside a closed line, positive where it goes anticlockwise."""
+    import numpy as np
+
+    q = np.roll(p, -1, axis=0)
+    return float(np.sum(p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]))
+
+
+def meets_itself(p: Any) -> bool:
+    """Whether two sides of a closed line that are no neighbours cross or touch."""
+    import numpy as np
+
+    q, n, near = np.roll(p, -1, axis=0), len(p), SAME * float(np.linalg.norm(np.ptp(p, axis=0)))
+
+    def left(u: Any, v: Any, w: Any) -> Any:
+        return (v - u)[..., 0] * (w - u)[..., 1] - (v - u)[..., 1] * (w - u)[..., 0]
+
+    def far(u: Any, v: Any, w: Any) -> Any:
+        """Of the places w from the sides u to v."""
+        d = v - u
+        along = np.sum((w - u) * d, axis=-1) / np.sum(d * d, axis=-1)
+        return np.linalg.norm(w - u - np.clip(along, 0.0, 1.0)[..., None] * d, axis=-1)
+
+    for k in range(n):
+        others = [m for m in range(n) if (m - k) % n not in (0, 1, n - 1)]
+        if not others:
+            continue
+        a, b, c, d = p[k], q[k], p[others], q[others]
+        cross = (left(a, b, c) * left(a, b, d) < 0.0) & (left(c, d, a) * left(c, d, b) < 0.0)
+        if cross.any() or (far(a, b, c) <= near).any() or (far(c, d, a) <= near).any():
+            return True
+    return False
+
+
+def put_together(p: Any, order: Any, radius: float, closed: bool, side: int) -> Profile:
+    """The pieces of a line whose points are in the right order; `order`: which of those given."""
+    import numpy as np
+
+    n, size = len(p), float(np.linalg.norm(np.ptp(p, axis=0)))
+    ahead = np.roll(p, -1, axis=0) - p if closed else np.diff(p, axis=0)
+    lengths = np.linalg.norm(ahead, axis=1)
+    if not lengths.min() > SAME * size:
+        k = int(np.argmin(lengths))
+        raise Flaw("two neighbours are one place", "leave one of them out", int(order[k]))
+    way = ahead / lengths[:, None]
+    cuts, arcs, edges, sharp = np.zeros(n), {}, [], inf
+    for k in range(n) if closed else range(1, n - 1):
+        cross = float(way[k - 1][0] * way[k][1] - way[k - 1][1] * way[k][0])
+        angle = acos(min(max(float(way[k - 1] @ way[k]), -1.0), 1.0))
+        if angle < PLAIN:
+            continue
+        if angle > pi - BACK:
+            hint = "make it two profiles, or wider there"
+            raise Flaw("the profile turns back on itself", hint, int(order[k]))
+        round_outside = cross < 0.0
+        if round_outside == (side > 0):
+            sharp = min(sharp, radius)
+        elif radius == 0.0:
+            what = "the profile turns inwards there, and a ball would touch both of its sides"
+            hint = "give `corner_radius`, more than the ball's, or a contact for each side"
+            raise Flaw(what, hint, int(order[k]))
+        if radius == 0.0:
+            edges.append(p[k])
+            continue
+        cuts[k] = radius * tan(0.5 * angle)
+        inwards = (way[k] - way[k - 1]) / np.linalg.norm(way[k] - way[k - 1])
+        centre = p[k] + inwards * (radius / cos(0.5 * angle))
+        arcs[k] = (ROUND if round_outside else HOLLOW, *centre, radius, *-inwards, cos(0.5 * angle))
+    pieces: list[tuple[float, ...]] = []
+    for k in range(len(way)):
+        left = float(lengths[k] - cuts[k] - cuts[(k + 1) % n])
+        if left < -SAME * size:
+            what = f"no side is left between two corners rounded by {radius:g} m"
+            raise Flaw(what, "take a smaller `corner_radius`", int(order[k]))
+        if k in arcs:
+            pieces.append(arcs[k])
+        if left > SAME * size:
+            pieces.append((STRAIGHT, *(p[k] + cuts[k] * way[k]), *way[k], left, 0.0))
+    if not closed:
+        edges += [p[0], p[-1]]
+        sharp = 0.0
+    return finished(pieces, edges, sharp, side)
+
+
+def finished(pieces: list[tuple[float, ...]], edges: list[Any], sharp: float, side: int) -> Profile:
+    """The profile of pieces one behind the other, and of places where they meet at an angle."""
+    places, normals = sampled(pieces)
+    reach = fits(places, side * normals)
+    pieces = [*pieces, *((EDGE, *place, 0.0, 0.0, 0.0, 0.0) for place in edges)]
+    return Profile(grouped(pieces), sharp, reach, places)
+
+
+def grouped(pieces: list[tuple[float, ...]]) -> list[float]:
+    """The numbers of laws/surfaces.py: few pieces in one group, many in about as many groups as
+    there are pieces in each."""
+    import numpy as np
+
+    each = len(pieces) if len(pieces) <= FEW else round(len(pieces) ** 0.5)
+    parts = [pieces[k : k + each] for k in range(0, len(pieces), each)]
+    numbers, first = [float(len(parts))], 1 + GROUP * len(parts)
+    for part in parts:
+        ends = np.array([end for piece in part for end in ends_of(piece)])
+        middle = 0.5 * (ends.min(axis=0) + ends.max(axis=0))
+        far = float(np.linalg.norm(ends - middle, axis=1).max()) * (1.0 + NEXT)
+        numbers += [*middle.tolist(), far, float(first), float(len(part))]
+        first += SIZE * len(part)
+    return [*numbers, *(float(c) for piece in pieces for c in piece)]
+
+
+def ends_of(piece: tuple[float, ...]) -> list[Any]:
+    """Places that a piece lies between: its ends, of an arc the corners of a box around it."""
+    import numpy as np
+
+    kind, x, y, a, b, c, d = piece
+    at = np.array([x, y])
+    if kind == EDGE:
+        return [at]
+    if kind == STRAIGHT:
+        return [at, at + c * np.array([a, b])]
+    ray, across = np.array([b, c]), np.array([-c, b])
+    aside = np.sqrt(max(1.0 - d * d, 0.0)) if d > 0.0 else 1.0
+    return [at + a * (u * ray + v * aside * across) for u in (d, 1.0) for v in (-1.0, 1.0)]
+
+
+def smooth(points: Any, closed: bool, side: int, tolerance: float) -> Profile:
+    """The pieces of a cubic spline through points, natural at the ends of an open one: pairs of
+    arcs that have its places and tangents at their ends and are nowhere further away from it than
+    the tolerance, of its size.  Its parameter is the length of the chords.  Raises Flaw.
+    """
+    import numpy as np
+    from scipy.interpolate import CubicSpline
+
+    p = np.array(points, float)
+    size = float(np.linalg.norm(np.ptp(p, axis=0))) if len(p) else 0.0
+    if closed and len(p) > 1 and np.linalg.norm(p[-1] - p[0]) <= SAME * size:
+        p = p[:-1]
+    if len(p) < 3:
+        raise Flaw(f"{len(p)} points are no smooth profile", "it needs 3")
+    if closed and area(p) > 0.0:
+        p = p[::-1]
+    line = np.vstack([p, p[:1]]) if closed else p
+    chords = np.linalg.norm(np.diff(line, axis=0), axis=1)
+    if not chords.min() > SAME * size:
+        raise Flaw("two neighbours are one place", "leave one of them out")
+    nodes = np.append(0.0, np.cumsum(chords))
+    spline = CubicSpline(nodes, line, bc_type="periodic" if closed else "natural")
+    pieces: list[tuple[float, ...]] = []
+    waiting = [(float(a), float(b)) for a, b in zip(nodes[-2::-1], nodes[:0:-1], strict=True)]
+    while waiting:
+        a, b = waiting.pop()
+        pair = two_arcs(*(spline(u, k) for u in (a, b) for k in (0, 1)))
+        inner = spline(np.linspace(a, b, 9)[1:-1])
+        if off_pieces(pair, inner) <= tolerance * size:
+            pieces += pair
+            continue
+        if len(pieces) + len(waiting) > MOST or b - a < NEXT * nodes[-1]:
+            place = spline(a)
+            what = f"turns too sharply at [{place[0]:.6g}, {place[1]:.6g}]"
+            raise Flaw(what, "smooth the points, or give straight sides and `corner_radius`")
+        waiting += [(0.5 * (a + b), b), (a, 0.5 * (a + b))]
+    if closed and meets_itself(np.array([piece[1:3] for piece in pieces_as_lines(pieces)])):
+        raise Flaw("the profile crosses itself", "give its points in their order round it")
+    rounds = [one[3] for one in pieces if one[0] == (ROUND if side > 0 else HOLLOW)]
+    edges = [] if closed else [p[0], p[-1]]
+    return finished(pieces, edges, min(rounds, default=inf) if closed else 0.0, side)
+
+
+def pieces_as_lines(pieces: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
+    """A straight piece for each, between where it begins and where the next one does."""
+    starts = [start_of(piece) for piece in pieces]
+    return [(STRAIGHT, float(start[0]), float(start[1])) for start in starts]
+
+
+def start_of(piece: tuple[float, ...]) -> Any:
+    """Where a piece begins."""
+    import numpy as np
+
+    kind, x, y, a, b, c, d = piece
+    if kind == STRAIGHT:
+        return np.array([x, y])
+    out = 1.0 if kind == ROUND else -1.0
+    angle = np.arctan2(c, b) + out * acos(d)
+    return np.array([x + a * np.cos(angle), y + a * np.sin(angle)])
+
+
+def two_arcs(p: Any, d: Any, q: Any, e: Any) -> list[tuple[float, ...]]:
+    """Two arcs, one behind the other, from p with the tangent d to q with the tangent e.
+
+    With unit tangents their common end is (p + k d + q - k e) / 2, where both arcs have tangents
+    of the length k:  2 k^2 (1 - d.e) + 2 k v.(d + e) - v.v = 0,  v = q - p      [Bolton1975]
+    """
+    import numpy as np
+
+    d, e, v = d / np.linalg.norm(d), e / np.linalg.norm(e), q - p
+    a, b, c = 2.0 * (1.0 - float(d @ e)), float(v @ (d + e)), float(v @ v)
+    k = c / (b + np.sqrt(b * b + a * c))  # the positive root of a k^2 + 2 b k - c = 0
+    middle = 0.5 * (p + k * d + q - k * e)
+    ray = middle - p
+    tangent = 2.0 * ray * float(ray @ d) / float(ray @ ray) - d
+    return [arc(p, d, middle), arc(middle, tangent / np.linalg.norm(tangent), q)]
+
+
+def arc(p: Any, d: Any, q: Any) -> tuple[float, ...]:
+    """The piece from p with the unit tangent d to q."""
+    import numpy as np
+
+    v, left = q - p, np.array([-d[1], d[0]])
+    square = float(v @ v)
+    bend = 2.0 * float(left @ v) / square  # 1/R, positive where it turns left
+    if abs(bend) * np.sqrt(square) < FLAT:
+        along = v / np.sqrt(square)
+        return (STRAIGHT, *p, *along, float(np.sqrt(square)), 0.0)
+    R = 1.0 / abs(bend)
+    centre = p + left / bend
+    out = (p - centre) / R + (q - centre) / R
+    out /= np.linalg.norm(out)
+    half = np.sqrt(square) / (2.0 * R)
+    return (ROUND if bend < 0.0 else HOLLOW, *centre, R, *out, float(np.sqrt(1.0 - half * half)))
+
+
+def off_pieces(pieces: list[tuple[float, ...]], places: Any) -> float:
+    """How far places are from the nearest of some pieces, the largest."""
+    import numpy as np
+
+    away = []
+    for kind, x, y, a, b, *_ in pieces:
+        v = places - np.array([x, y])
+        if kind == STRAIGHT:
+            away.append(np.abs(a * v[:, 1] - b * v[:, 0]))
+        else:
+            away.append(np.abs(np.linalg.norm(v, axis=1) - a))
+    return float(np.min(away, axis=0).max())
+
+
+def sampled(pieces: list[tuple[float, ...]]) -> tuple[Any, Any]:
+    """Places along the pieces, and the normals there that have the line on their right."""
+    import numpy as np
+
+    lengths = [one[5] if one[0] == STRAIGHT else 2.0 * one[3] * acos(one[6]) for one in pieces]
+    places, normals = [], []
+    for (kind, x, y, a, b, c, d), length in zip(pieces, lengths, strict=True):
+        part = np.linspace(0.0, 1.0, max(int(SAMPLES * length / sum(lengths)), LEAST))
+        if kind == STRAIGHT:
+            places.append(np.array([x, y]) + part[:, None] * length * np.array([a, b]))
+            normals.append(np.tile([-b, a], (len(part), 1)))
+            continue
+        out = 1.0 if kind == ROUND else -1.0
+        turns = np.arctan2(c, b) + out * acos(d) * (1.0 - 2.0 * part)
+        ray = np.column_stack([np.cos(turns), np.sin(turns)])
+        places.append(np.array([x, y]) + a * ray)
+        normals.append(out * ray)
+    return np.vstack(places), np.vstack(normals)
+
+
+def fits(places: Any, normals: Any) -> float:
+    """Radius of the largest ball that touches a profile in one place only, wherever it does."""
+    import numpy as np
+
+    least, size = inf, float(np.linalg.norm(np.ptp(places, axis=0)))
+    for place, normal in zip(places, normals, strict=True):
+        d = places - place
+        square = np.einsum("ij,ij->i", d, d)
+        above = d @ normal
+        seen = (above > LEVEL * np.sqrt(square)) & (square > (NEXT * size) ** 2)
+        if seen.any():
+            least = min(least, float((square[seen] / (2.0 * above[seen])).min()))
+    return least
