@@ -10,18 +10,9 @@ from pydantic import ValidationError
 from pydantic_core import ValidationError as CoreError
 
 from trsim.errors import ScenarioError
-from trsim.fields import (
-    Flag,
-    Function,
-    FunctionSpec,
-    Spec,
-    SpecError,
-    Unit,
-    direction,
-    number,
-    vector,
-)
+from trsim.fields import Flag, Spec, SpecError, Unit, direction, number, vector
 from trsim.units import BASE, DERIVED, quantity, unit
+from trsim.varying import Function, FunctionSpec
 
 EXACT = {
     "0.3 mm": 0.0003,

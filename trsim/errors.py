@@ -8,7 +8,7 @@ import difflib
 import os
 import re
 import stat
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -249,3 +249,11 @@ def described(value: Any) -> str:
     if value is None:
         return "nothing"
     return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def within(key: str | int, function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call, and tell in an error which entry it was about."""
+    try:
+        return function(*arguments)
+    except ScenarioError as error:
+        raise error.at(key) from None

@@ -5,12 +5,12 @@ import pytest
 from trsim import elements
 from trsim.assemble.assemble import assemble
 from trsim.expressions import FUNCTIONS
-from trsim.fields import TABLE_KEYS
 from trsim.scenario.explain import explained, worded
 from trsim.scenario.load import loads
 from trsim.scenario.meanings import meanings, specs
 from trsim.scenario.scenario import Scenario
 from trsim.solve.simulate import simulate
+from trsim.varying import TABLE_KEYS
 
 EVERYTHING = explained()
 # each once, in an order of its own: processes that share the tests must collect the same ones

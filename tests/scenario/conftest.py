@@ -8,7 +8,8 @@ from annotated_types import Ge, Gt
 from pydantic import model_validator
 
 from trsim import elements
-from trsim.fields import Function, Spec, Unit, vector
+from trsim.fields import Spec, Unit, vector
+from trsim.varying import Function
 
 Inertia = Annotated[float, Ge(0), Unit("kg*m^2")]
 

@@ -26,17 +26,8 @@ from trsim.elements.prescribed import began
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import f8, i8, void
-from trsim.laws.functions import (
-    BY_SENSORS,
-    FREE,
-    corner,
-    ends_of,
-    hold,
-    located,
-    neighbour,
-    piece_at,
-    sensed,
-)
+from trsim.laws.corners import corner, ends_of, located, neighbour, piece_at, sensed
+from trsim.laws.functions import BY_SENSORS, FREE, hold
 
 OFFSET, DRIVE, FIRST, BEHIND, HELD_FROM, HELD_TO, SENSED, READS, PISTON, N_FEATURE = range(10)
 PLACE_JUMP, RATE_JUMP = range(2)  # columns of `jump`

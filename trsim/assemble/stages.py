@@ -16,10 +16,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.addresses import JointCoordinate
 from trsim.assemble.better import better
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.layout import no_outputs
+from trsim.assemble.places import JointCoordinate
 from trsim.assemble.rows import all_rows
 from trsim.assemble.switches import (
     AS_DRAWN,

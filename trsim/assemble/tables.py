@@ -8,11 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.addresses import WOUND, Addresses
+from trsim.assemble.addresses import Addresses
 from trsim.assemble.dense import inverse, length, product
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.light import lacking
 from trsim.assemble.orientation import quaternion
+from trsim.assemble.places import WOUND
 from trsim.assemble.switches import BAND, CHANNEL, Switches
 from trsim.elements import scene as scales
 from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, ContactNumbers, Element

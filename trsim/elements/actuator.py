@@ -13,12 +13,13 @@ kinetic energy of the piston stands in the book with the springs.  Of the rigid 
 l'' = n . d'' + (d' . d' - l'^2) / l, with d from end i to end j.              [Featherstone2008]
 """
 
-from math import nan, sqrt
+from math import nan
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Gt
 from pydantic import model_validator
 
+from trsim.elements.between import drawn_length, reach, stretched
 from trsim.elements.contract import (
     DAMPERS,
     DRIVES,
@@ -26,7 +27,6 @@ from trsim.elements.contract import (
     Channel,
     Element,
     Limit,
-    Reach,
     Row,
     kernel,
     measured,
@@ -42,9 +42,10 @@ from trsim.elements.frames import (
 )
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.errors import ScenarioError
-from trsim.fields import Function, Spec, Unit, point
+from trsim.fields import Spec, Unit, point
 from trsim.kernels.columns import f8, i8
 from trsim.kernels.lazy import internal
+from trsim.varying import Function
 
 
 class Supply(Spec):
@@ -120,7 +121,7 @@ class Own(AnyDrive):
 def pack(name, spec, at):
     p, q = spec.points
     i, j = at.bodies(spec.bodies, p, q)
-    drawn = sqrt(sum((b - a) ** 2 for a, b in zip(p, q, strict=True)))
+    drawn = drawn_length(spec)
     if drawn == 0.0:
         raise ScenarioError("its ends coincide as drawn", "the line has no direction", ("points",))
     entry = at.entry()
@@ -151,9 +152,7 @@ STALLED = "reached its stall force"
 @kernel
 def coordinate(t, scene, e):
     own = Own(scene, e)
-    _, _, _, length, rate = line(scene, e)
-    scene.S[own.coordinate, 0] = length - own.length
-    scene.S[own.coordinate, 1] = rate
+    stretched(scene, e, own.coordinate, own.length)
 
 
 @kernel
@@ -271,13 +270,6 @@ WITH_SUPPLY = (
     Channel("piston", "m", "stroke of the piston"),
     Channel("supply_force", "N", "sign times the force of the supply on the piston"),
 )
-
-
-def reach(row):
-    own = Own.of(row)
-    return Reach(
-        lines=((own.i, own.p_i, own.j, own.p_j),), places=((own.i, own.p_i, (own.i, own.j)),)
-    )
 
 
 ELEMENT = Element(

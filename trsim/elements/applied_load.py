@@ -23,10 +23,11 @@ from trsim.elements.contract import (
 )
 from trsim.elements.frames import arm, dot, push, scaled, spin, twist, velocity
 from trsim.elements.loads import Load
-from trsim.fields import Function, direction, point, vector
+from trsim.fields import direction, point, vector
 from trsim.kernels.columns import V3, i8
 from trsim.kernels.lazy import internal
 from trsim.laws.functions import value
+from trsim.varying import Function
 
 
 class AppliedLoad(Load):

@@ -24,7 +24,7 @@ from typing import Annotated, ClassVar
 from annotated_types import Gt
 from pydantic import model_validator
 
-from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel, measured
+from trsim.elements.contract import Channel, Row, kernel, measured
 from trsim.elements.curve import Curve, furthest, named, sampled, sharpest
 from trsim.elements.frames import (
     arm,
@@ -50,12 +50,14 @@ from trsim.elements.on_curve import (
     follow,
     frames,
     inside,
+    on_curve,
     settled,
     stay,
     stored,
     write_place,
 )
-from trsim.elements.rows import ARC, Axes, JointRow, constraint_of
+from trsim.elements.on_curve import turning as in_plane
+from trsim.elements.rows import Axes, JointRow
 from trsim.errors import ScenarioError
 from trsim.fields import Unit, direction, vector
 from trsim.fields import point as of_place
@@ -306,27 +308,17 @@ def doubts(name, spec, largest):
         )
 
 
-def reach(row):
-    """The cam pushes in the plane of its curve."""
-    own = Own.of(row)
-    return Reach(slides=((own.i, own.u_i), (own.i, own.w_i)))
-
-
 def turning(row):
-    own = Own.of(row)
-    axes = ((own.i, own.u_i), (own.i, own.w_i), (own.j, own.m_j))
-    return Turning(points=((own.j, own.p_j),), axes=axes[: 2 + own.follower])
+    own, found = Own.of(row), in_plane(row)
+    face = ((own.j, own.m_j),) if own.follower == FACE else ()
+    return found._replace(axes=(*found.axes, *face))
 
 
-ROWS = (JointRow("contact", "n", fill=contact),)
-ELEMENT = Element(
+ELEMENT = on_curve(
     key="cam",
-    section="joints",
     spec=Cam,
     pack=pack,
-    rows=tuple(row.name for row in ROWS),
-    holds=tuple(row.holds for row in ROWS),
-    coordinates=(ARC,),
+    rows=(JointRow("contact", "n", fill=contact),),
     channels=(
         Channel("normal_force", "N", "between cam and follower, positive where they press"),
         Channel("pull", "N", "by which the follower is held where it would lift off", least=0.0),
@@ -337,16 +329,9 @@ ELEMENT = Element(
     loads={"normal_force": "contact force"},
     judged=lambda _: True,
     doubts=doubts,
-    reach=reach,
     turning=turning,
-    holds_twist=False,
     picture="lobe",
-    kernels={
-        "constraint": constraint_of(ROWS),
-        "coordinate": coordinate,
-        "gaps": gap,
-        "measure": measure,
-    },
+    kernels={"coordinate": coordinate, "gaps": gap, "measure": measure},
     example="""
 bodies:
   wheel: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [0, 0]}

@@ -11,8 +11,9 @@ from pydantic import model_validator
 from pydantic_core import core_schema
 
 from trsim.errors import ScenarioError, described
-from trsim.fields import OUTSIDE, VARIABLES, Column, FunctionSpec, Spec
+from trsim.fields import Spec
 from trsim.units import check_dimension, titled
+from trsim.varying import OUTSIDE, VARIABLES, Column, FunctionSpec
 
 TITLES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 ALLOWED = (VARIABLES, *[("N",)] * 3, *[("N*m",)] * 3)  # units of the seven columns

@@ -18,10 +18,11 @@ from trsim import expressions
 from trsim.elements.placed import Placed
 from trsim.elements.prescribed import rates_at
 from trsim.errors import ScenarioError, described
-from trsim.fields import Column, Flag, Unit, direction, point, vector
+from trsim.fields import Flag, Unit, direction, point, vector
 from trsim.laws import functions
 from trsim.laws.curves import BEND, PLACES, WEIGHTS
 from trsim.units import check_dimension, titled
+from trsim.varying import Column
 
 MOST_POINTS = 5000
 SAMPLES = 4000  # of a formula; of a spline PER_PIECE for each piece, and no fewer than LEAST

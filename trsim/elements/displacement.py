@@ -9,9 +9,10 @@ the stroke of a body on compliant rails.
 
 from typing import Annotated, ClassVar, Literal
 
-from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel, measured
+from trsim.elements.contract import Channel, Element, Row, kernel, measured
 from trsim.elements.frames import Along, arm, points, stroke, stroke_acceleration
 from trsim.elements.joint import perpendicular
+from trsim.elements.shown import reach, turning
 from trsim.fields import Spec, Unit, point, vector
 from trsim.kernels.columns import f8
 
@@ -64,16 +65,6 @@ def measure(t, scene, e, o):
     s, axis = own.coordinate, arm(scene.X, own.i, own.axis)
     out[o], out[o + 1] = S[s, 0], S[s, 1]
     out[o + 2] = own.sign * stroke_acceleration(scene, e, axis)
-
-
-def reach(row):
-    own = Own.of(row)
-    return Reach(shown=((own.i, own.axis),))
-
-
-def turning(row):
-    own = Own.of(row)
-    return Turning(points=((own.j, own.p_j),), axes=((own.i, own.axis),))
 
 
 ELEMENT = Element(

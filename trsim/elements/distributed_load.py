@@ -23,9 +23,10 @@ from trsim.elements.contract import (
 )
 from trsim.elements.loads import Load
 from trsim.errors import ScenarioError
-from trsim.fields import Function, direction, vector
+from trsim.fields import direction, vector
 from trsim.kernels.columns import f8, i8
 from trsim.laws.cable_section import uniform_shares
+from trsim.varying import Function
 
 
 class DistributedLoad(Load):

@@ -38,8 +38,9 @@ from trsim.elements.frames import (
 )
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.errors import ScenarioError
-from trsim.fields import Function, Spec, Unit
+from trsim.fields import Spec, Unit
 from trsim.kernels.lazy import internal
+from trsim.varying import Function
 
 
 class Compliance(Spec):

@@ -21,6 +21,7 @@ from trsim.elements.contract import (
     measured,
 )
 from trsim.elements.frames import dot, inside, spin, times
+from trsim.elements.shown import on_pendulum
 from trsim.errors import ScenarioError
 from trsim.fields import Spec
 from trsim.kernels.columns import f8
@@ -98,14 +99,5 @@ ELEMENT = Element(
     acts_on=lambda _: frozenset(),
     channels=(Channel("", "J", "energy of the mechanism"),),
     kernels={"measure": measure},
-    example="""
-bodies:
-  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
-joints:
-  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
-sensors:
-  whole: {type: energy}
-gravity: [0, -9.81, 0]
-solver: {end: 1 s}
-""",
+    example=on_pendulum("whole: {type: energy}"),
 )

@@ -12,11 +12,13 @@ any other load.
 from typing import ClassVar
 
 from trsim.elements.contract import Channel, Element, Pair, Row, measured
+from trsim.elements.shown import on_pendulum
 from trsim.errors import ScenarioError
-from trsim.fields import Function, Spec
+from trsim.fields import Spec
 from trsim.kernels.columns import i8, run
 from trsim.laws.functions import value, value_and_rate
 from trsim.units import unit
+from trsim.varying import Function
 
 
 class Formula(Spec):
@@ -88,15 +90,7 @@ ELEMENT = Element(
     ),
     stands_for=lambda spec: spec.value.node,
     kernels={"measure": measure},
-    example="""
-bodies:
-  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
-joints:
-  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
-sensors:
-  turn: {joint: hinge}
-  cosine: {type: formula, value: "cos(turn) + 0.1*turn"}
-gravity: [0, -9.81, 0]
-solver: {end: 1 s}
-""",
+    example=on_pendulum(
+        "turn: {joint: hinge}", 'cosine: {type: formula, value: "cos(turn) + 0.1*turn"}'
+    ),
 )

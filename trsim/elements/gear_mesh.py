@@ -29,11 +29,12 @@ from trsim.elements.contract import (
 from trsim.elements.frames import TwoAngles, arm, scaled, twist_apart
 from trsim.elements.gear import sense
 from trsim.elements.transmission import carried
-from trsim.fields import Flag, FunctionSpec, Spec, Unit
+from trsim.fields import Flag, Spec, Unit
 from trsim.kernels.columns import V3, f8, i8
 from trsim.kernels.lazy import internal
 from trsim.laws.functions import value
 from trsim.laws.tables import smoothstep
+from trsim.varying import FunctionSpec
 
 X = "stretch"  # the word for x in functions
 Length = Annotated[float, Gt(0), Unit("m")]

@@ -19,8 +19,9 @@ from trsim.elements.frames import (
     twist_apart,
 )
 from trsim.elements.sprung import RATE, Law, Sprung, X, packed_law, store, tension
-from trsim.fields import Function, Unit
+from trsim.fields import Unit
 from trsim.kernels.columns import f8, i8
+from trsim.varying import Function
 
 
 class JointSpring(Sprung):

@@ -2,7 +2,8 @@
 
 from typing import Any, Self
 
-from trsim.fields import FunctionSpec, Spec
+from trsim.fields import Spec
+from trsim.varying import FunctionSpec
 
 
 class Load(Spec):

@@ -17,10 +17,11 @@ the tangent turns by less than a right angle in it: solve/march/turns.py knows u
 from math import sqrt
 from typing import Any
 
-from trsim.elements.contract import Channel, Limit, compiled
+from trsim.elements.contract import Channel, Element, Limit, Reach, Turning, compiled
 from trsim.elements.curve import Sampled, nearest
 from trsim.elements.frames import Along, along_row, arm, carried, dot, plus, scaled, separation
 from trsim.elements.joint import Joint
+from trsim.elements.rows import ARC, Axes, JointRow, constraint_of
 from trsim.errors import ScenarioError
 from trsim.fields import direction
 from trsim.kernels.columns import V3
@@ -125,6 +126,38 @@ def ends_of(curve: Sampled) -> tuple[Limit, ...]:
     if curve.closed:
         return ()
     return (Limit("end", curve.length, "m", "jammed", "came to an end of its curve, of length"),)
+
+
+def reach(row: Any) -> Reach:
+    """In the plane of the curve, where its point goes and is pushed."""
+    own = Axes.of(row)
+    return Reach(slides=((own.i, own.u_i), (own.i, own.w_i)))
+
+
+def turning(row: Any) -> Turning:
+    """Of the point of body j, in the axes of the curve."""
+    own = Axes.of(row)
+    return Turning(points=((own.j, own.p_j),), axes=((own.i, own.u_i), (own.i, own.w_i)))
+
+
+def on_curve(rows: tuple[JointRow, ...], kernels: dict[str, Any], **other: Any) -> Element:
+    """The element that rows of a joint on a curve make.
+
+    other: fields of Element, also those that follow where they are to differ.
+    """
+    follows: dict[str, Any] = {
+        "coordinates": (ARC,),
+        "reach": reach,
+        "turning": turning,
+        "holds_twist": False,
+    }
+    return Element(
+        section="joints",
+        rows=tuple(row.name for row in rows),
+        holds=tuple(row.holds for row in rows),
+        kernels={"constraint": constraint_of(rows)} | kernels,
+        **(follows | other),
+    )
 
 
 # --- what acts along a curve, or tells of it -------------------------------------------------

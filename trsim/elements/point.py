@@ -7,9 +7,10 @@ so the rate and the acceleration are those an observer on `frame` sees along a.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel, measured
+from trsim.elements.contract import Channel, Element, Row, Turning, kernel, measured
 from trsim.elements.frames import Along, arm, stroke, stroke_acceleration
 from trsim.elements.joint import perpendicular
+from trsim.elements.shown import on_pendulum, reach
 from trsim.fields import Spec, point, vector
 
 
@@ -55,11 +56,6 @@ def measure(t, scene, e, o):
     out[o + 2] = stroke_acceleration(scene, e, axis)
 
 
-def reach(row):
-    own = Along.of(row)
-    return Reach(shown=((own.i, own.axis),))
-
-
 def turning(row):
     own = Along.of(row)
     return Turning(points=((own.j, own.p_j), (own.i, own.p_i)), axes=((own.i, own.axis),))
@@ -79,14 +75,5 @@ ELEMENT = Element(
     ),
     turning=turning,
     kernels={"coordinate": coordinate, "measure": measure},
-    example="""
-bodies:
-  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
-joints:
-  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
-sensors:
-  height: {type: point, body: rod, at: [0.4, 0], axis: [0, 1, 0]}
-gravity: [0, -9.81, 0]
-solver: {end: 1 s}
-""",
+    example=on_pendulum("height: {type: point, body: rod, at: [0.4, 0], axis: [0, 1, 0]}"),
 )

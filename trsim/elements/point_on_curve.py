@@ -9,7 +9,7 @@ is closed.  reaction acts on body j at its point, across the curve: there is no 
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Reach, Row, Turning, kernel, measured
+from trsim.elements.contract import Row, kernel, measured
 from trsim.elements.curve import Curve, sampled
 from trsim.elements.on_curve import (
     LENGTH,
@@ -20,10 +20,11 @@ from trsim.elements.on_curve import (
     ends_of,
     follow,
     frames,
+    on_curve,
     stay,
     stored,
 )
-from trsim.elements.rows import ARC, Axes, JointRow, along, constraint_of
+from trsim.elements.rows import Axes, JointRow, along
 from trsim.fields import point
 from trsim.kernels.columns import constraint_row, i8
 from trsim.kernels.lazy import internal
@@ -85,37 +86,14 @@ def measure(t, scene, e, o):
     scene.out[o] = scene.S[Own(scene, e).coordinate, 0]
 
 
-def reach(row):
-    """The point goes wherever the plane of the curve does."""
-    own = Own.of(row)
-    return Reach(slides=((own.i, own.u_i), (own.i, own.w_i)))
-
-
-def turning(row):
-    own = Own.of(row)
-    return Turning(points=((own.j, own.p_j),), axes=((own.i, own.u_i), (own.i, own.w_i)))
-
-
-ROWS = (JointRow("normal", "n", fill=normal), along("a", "axial"))
-ELEMENT = Element(
+ELEMENT = on_curve(
     key="point_on_curve",
-    section="joints",
     spec=PointOnCurve,
     pack=pack,
-    rows=tuple(row.name for row in ROWS),
-    holds=tuple(row.holds for row in ROWS),
-    coordinates=(ARC,),
+    rows=(JointRow("normal", "n", fill=normal), along("a", "axial")),
     channels=(LENGTH,),
-    reach=reach,
-    turning=turning,
-    holds_twist=False,
     picture="slot",
-    kernels={
-        "constraint": constraint_of(ROWS),
-        "coordinate": coordinate,
-        "gaps": gap,
-        "measure": measure,
-    },
+    kernels={"coordinate": coordinate, "gaps": gap, "measure": measure},
     example="""
 bodies:
   bead: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [-0.5, 0.25]}

@@ -10,9 +10,10 @@ v is the velocity of the point in the world: along an axis that turns, it is wha
 from math import sqrt
 from typing import ClassVar
 
-from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel, measured
+from trsim.elements.contract import Channel, Element, Row, kernel, measured
 from trsim.elements.frames import Along, arm, centripetal, cross, dot, plus, spin, velocity
 from trsim.elements.joint import of_key
+from trsim.elements.shown import on_pendulum, reach, turning
 from trsim.fields import Spec, point, vector
 from trsim.kernels.lazy import internal
 
@@ -73,17 +74,6 @@ def measure(t, scene, e, o):
     out[o], out[o + 1] = shown, rate
 
 
-def reach(row):
-    own = Along.of(row)
-    return Reach(shown=((own.i, own.axis),) if any(own.axis) else ())
-
-
-def turning(row):
-    own = Along.of(row)
-    axes = ((own.i, own.axis),) if any(own.axis) else ()
-    return Turning(points=((own.j, own.p_j),), axes=axes)
-
-
 ELEMENT = Element(
     key="point_velocity",
     section="sensors",
@@ -97,14 +87,5 @@ ELEMENT = Element(
     ),
     turning=turning,
     kernels={"coordinate": coordinate, "measure": measure},
-    example="""
-bodies:
-  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
-joints:
-  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
-sensors:
-  tip_speed: {type: point_velocity, body: rod, at: [0.4, 0]}
-gravity: [0, -9.81, 0]
-solver: {end: 1 s}
-""",
+    example=on_pendulum("tip_speed: {type: point_velocity, body: rod, at: [0.4, 0]}"),
 )

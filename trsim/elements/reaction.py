@@ -13,6 +13,7 @@ from trsim.elements.acted import Acted, acting, wrench
 from trsim.elements.contract import Channel, Element, Row, Turning, measured
 from trsim.elements.frames import arm, cross, dot, minus
 from trsim.elements.joint import of_key
+from trsim.elements.shown import on_pendulum
 from trsim.errors import ScenarioError, known
 from trsim.fields import Spec, point, vector
 from trsim.kernels.columns import V3, f8
@@ -100,14 +101,5 @@ ELEMENT = Element(
     channels=(Channel("", "drive", "component, or size, of the force or moment"),),
     turning=turning,
     kernels={"measure": measure},
-    example="""
-bodies:
-  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
-joints:
-  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
-sensors:
-  pull: {type: reaction, joint: hinge, axis: [1, 0, 0], frame: rod}
-gravity: [0, -9.81, 0]
-solver: {end: 1 s}
-""",
+    example=on_pendulum("pull: {type: reaction, joint: hinge, axis: [1, 0, 0], frame: rod}"),
 )

@@ -18,6 +18,7 @@ from trsim.elements.frames import (
 )
 from trsim.elements.on_curve import NO_CURVE, AlongCurve, along_curve, stays_on, tangent
 from trsim.elements.rows import ARC
+from trsim.elements.shown import on_pendulum
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import f8, i8
 
@@ -104,14 +105,5 @@ ELEMENT = Element(
     pack=pack,
     channels=CHANNELS,
     kernels={"coordinate": coordinate, "measure": measure},
-    example="""
-bodies:
-  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
-joints:
-  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
-sensors:
-  elevation: {joint: hinge, at_start: 90 deg}
-gravity: [0, -9.81, 0]
-solver: {end: 1 s}
-""",
+    example=on_pendulum("elevation: {joint: hinge, at_start: 90 deg}"),
 )

@@ -8,12 +8,13 @@ f is the elastic force, d the damper (sprung.py).  l_0 is the length as drawn un
 l = 0 the line has no direction and the force is zero.
 """
 
-from math import dist, sqrt
+from math import dist
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge
 
-from trsim.elements.contract import DAMPERS, Channel, Element, Reach, Row, kernel, measured
+from trsim.elements.between import free_length, reach_always, stretched
+from trsim.elements.contract import DAMPERS, Channel, Element, Row, kernel, measured
 from trsim.elements.frames import at_both, between_points, line, points, push_apart, scaled
 from trsim.elements.sprung import (
     RATE,
@@ -25,8 +26,9 @@ from trsim.elements.sprung import (
     store,
     tension,
 )
-from trsim.fields import Flag, Function, Unit, point
+from trsim.fields import Flag, Unit, point
 from trsim.kernels.columns import f8
+from trsim.varying import Function
 
 
 class Spring(Sprung):
@@ -64,20 +66,18 @@ class Own(Law):
 def pack(name, spec, at):
     p, q = spec.points
     i, j = at.bodies(spec.bodies, p, q)
-    drawn = sqrt(sum((b - a) ** 2 for a, b in zip(p, q, strict=True)))
-    free = drawn if spec.free_length is None else spec.free_length
     law = packed_law(spec, at, at.entry(), turns=False, pulls=spec.tension_only)
     along = points(at, i, j, p, q) | law | {"axis": (0.0, 0.0, 0.0)}
     leaps = jump_at_zero(spec) if spec.tension_only else 0.0
-    return Row(*Own.packed(spec, **along, free_length=free), travel="distance", leaps=leaps)
+    return Row(
+        *Own.packed(spec, **along, free_length=free_length(spec)), travel="distance", leaps=leaps
+    )
 
 
 @kernel
 def coordinate(t, scene, e):
     own = Own(scene, e)
-    _, _, _, length, rate = line(scene, e)
-    scene.S[own.coordinate, 0] = length - own.free_length
-    scene.S[own.coordinate, 1] = rate
+    stretched(scene, e, own.coordinate, own.free_length)
 
 
 @kernel
@@ -102,19 +102,13 @@ def measure(t, scene, e, o):
     scene.out[o + 2] = scene.S[own.coordinate, 0] + own.free_length
 
 
-def reach(row):
-    own = Own.of(row)
-    line, place = (own.i, own.p_i, own.j, own.p_j), (own.i, own.p_i, (own.i, own.j))
-    return Reach(lines=(line,), places=(place,), always=True)
-
-
 ELEMENT = Element(
     key="spring",
     section="forces",
     spec=Spring,
     pack=pack,
     acts_at=at_both,
-    reach=reach,
+    reach=reach_always,
     channels=(
         Channel("force", "N", "tension"),
         Channel("elastic", "N", "what of it is elastic"),

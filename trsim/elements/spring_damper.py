@@ -6,17 +6,16 @@ l is the distance of the points, l_0 the length as drawn unless given.  At l = 0
 direction and the force is zero.
 """
 
-from math import sqrt
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge
 
+from trsim.elements.between import free_length, reach_always
 from trsim.elements.contract import (
     DAMPERS,
     SPRINGS,
     Channel,
     Element,
-    Reach,
     Row,
     kernel,
     measured,
@@ -66,9 +65,7 @@ class Own(TwoPoints):
 def pack(name, spec, at):
     p, q = spec.points
     i, j = at.bodies(spec.bodies, p, q)
-    drawn = sqrt(sum((b - a) ** 2 for a, b in zip(p, q, strict=True)))
-    free = drawn if spec.free_length is None else spec.free_length
-    return Row(*Own.packed(spec, **points(at, i, j, p, q), free_length=free))
+    return Row(*Own.packed(spec, **points(at, i, j, p, q), free_length=free_length(spec)))
 
 
 @kernel
@@ -98,19 +95,13 @@ def measure(t, scene, e, o):
     scene.out[o + 1] = length
 
 
-def reach(row):
-    own = Own.of(row)
-    line, place = (own.i, own.p_i, own.j, own.p_j), (own.i, own.p_i, (own.i, own.j))
-    return Reach(lines=(line,), places=(place,), always=True)
-
-
 ELEMENT = Element(
     key="spring_damper",
     section="forces",
     spec=SpringDamper,
     pack=pack,
     acts_at=at_both,
-    reach=reach,
+    reach=reach_always,
     channels=(
         Channel("force", "N", "tension"),
         Channel("length", "m", "distance of the two points"),

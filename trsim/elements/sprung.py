@@ -17,11 +17,12 @@ from trsim.elements.contract import SPRINGS
 from trsim.elements.frames import Along
 from trsim.errors import ScenarioError
 from trsim.expressions import evaluate
-from trsim.fields import FunctionSpec, Spec
+from trsim.fields import Spec
 from trsim.kernels.columns import i8
 from trsim.kernels.lazy import internal
 from trsim.laws.functions import value
 from trsim.laws.quadrature import integral
+from trsim.varying import FunctionSpec
 
 X, RATE = "stretch", "rate"  # the words for x and x'
 ZERO, ONE = FunctionSpec("constant", 0.0), FunctionSpec("constant", 1.0)

@@ -18,10 +18,9 @@ gap; a touch is located and latches the approach speed, as in a clearance joint.
 """
 
 from math import inf, sqrt
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar
 
-from annotated_types import Ge, Gt
-from pydantic import model_validator
+from annotated_types import Ge
 
 from trsim.elements.contract import (
     CONTACT,
@@ -53,9 +52,9 @@ from trsim.elements.frames import (
     scaled,
     velocity,
 )
-from trsim.elements.placed import Placed
+from trsim.elements.surface import Surface, shape_of
 from trsim.errors import ScenarioError
-from trsim.fields import Flag, Spec, Unit, point, vector
+from trsim.fields import Spec, Unit, point
 from trsim.kernels.columns import V3, f8, i8, run
 from trsim.kernels.lazy import internal
 from trsim.laws.contact import elastic, impact_force, normal_force, stored
@@ -69,68 +68,10 @@ from trsim.laws.friction import (
     on_branch,
     part_of_bristle,
 )
-from trsim.laws.profiles import Flaw, profile, smooth
-from trsim.laws.surfaces import CYLINDER, PLANE, SHAPES, SPHERE, away
+from trsim.laws.surfaces import PLANE, SPHERE, away
 
 CORNERED, STICKING = CODES["modified_coulomb"], CODES["sticking"]
 DEEP = 0.2  # of the radius of a ball: deeper than that it is no longer one that touches a surface
-SIDE = 1e-6  # of the size of a profile: a centre so near to it is on no side
-OTHERS = {"plane": (), "sphere": ("radius",), "cylinder": ("radius",), "profile": ("points",)}
-ONLY_OF = {
-    "radius": ("sphere", "cylinder"),
-    "hollow": ("sphere", "cylinder", "profile"),
-    "points": ("profile",),
-    "closed": ("profile",),
-    "corner_radius": ("profile",),
-    "smooth": ("profile",),
-}
-SPLINE = 1e-7  # of its size: how far arcs are from a spline through points
-
-
-class Surface(Placed):
-    """A surface of a body; it turns with the body.
-
-    body           the body, or ground
-    shape          plane: through `at`, free on the side of its y axis; sphere around `at`;
-                   cylinder around the z axis; profile: a line in the x-y plane, drawn out along z
-    at             its origin, as drawn; a place, or the name of a point
-    x_axis         direction of its x axis, as drawn
-    y_axis         direction of its y axis, made perpendicular to x
-    radius         of a sphere or a cylinder
-    hollow         whether it is free inside: a bowl, a hole, a slot
-    points         places [x, y] that a profile goes through
-    closed         whether a profile goes on from the last point to the first
-    smooth         whether it is a cubic spline, or straight from one point to the next
-    corner_radius  by which its corners are rounded where it is straight; 0: edges
-    """
-
-    type: ClassVar[str] = "surface"
-    body: str
-    shape: Literal["plane", "sphere", "cylinder", "profile"] = "plane"
-    at: point("m") = (0.0, 0.0, 0.0)
-    x_axis: vector("-") = (1.0, 0.0, 0.0)
-    y_axis: vector("-") = (0.0, 1.0, 0.0)
-    radius: Annotated[float, Gt(0), Unit("m")] | None = None
-    hollow: Flag = False
-    points: tuple[Annotated[tuple[float, float], Unit("m")], ...] | None = None
-    closed: Flag = False
-    smooth: Flag = False
-    corner_radius: Annotated[float, Ge(0), Unit("m")] = 0.0
-
-    @model_validator(mode="after")
-    def of_its_shape(self):
-        for key in OTHERS[self.shape]:
-            if getattr(self, key) is None:
-                raise ScenarioError(f"a {self.shape} needs `{key}`")
-        for key, shapes in ONLY_OF.items():
-            if key in self.model_fields_set and self.shape not in shapes:
-                raise ScenarioError(f"{key} is no number of a {self.shape}", "", (key,))
-        if self.smooth and self.corner_radius:
-            what = "a smooth profile has no corners"
-            raise ScenarioError(what, "leave out `corner_radius` or `smooth`", ("corner_radius",))
-        if self.hollow and self.shape == "profile" and not self.closed:
-            raise ScenarioError("only a closed profile has an inside", "closed: true", ("hollow",))
-        return self
 
 
 class Ball(Spec):
@@ -239,71 +180,6 @@ def bristles(spec, law, numbers, at):
     first = at.state(size)
     at.state(size)
     return first
-
-
-def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
-    """The columns that say what a surface is, and its curvature where Hertz's law has one.
-
-    centre: of the ball, in the axes of the surface.
-    """
-    surface, r = spec.surface, spec.ball.radius
-    code, R = SHAPES[surface.shape], surface.radius or 0.0
-    free = -1.0 if surface.hollow else 1.0
-    shaped = {"shape": code, "radius": R, "free": free, "profile": 0, "closed": 0}
-    if code == PLANE:
-        return {**shaped, "sharp": inf, "reach": inf}, 0.0
-    if code in (SPHERE, CYLINDER):
-        if surface.hollow and r >= R:
-            what = f"a ball of radius {r:g} m does not fit into one of {R:g} m"
-            raise ScenarioError(what, "", ("ball", "radius"))
-        bends = {"sharp": inf, "reach": R} if surface.hollow else {"sharp": R, "reach": inf}
-        return {**shaped, **bends}, free / R if code == SPHERE else None
-    side = int(free) if surface.closed else side_of(surface, centre)
-    try:
-        if surface.smooth:
-            found = smooth(surface.points, surface.closed, side, SPLINE)
-        else:
-            found = profile(surface.points, surface.corner_radius, surface.closed, side)
-    except Flaw as flaw:
-        where = ("points",) if flaw.point is None else ("points", flaw.point)
-        raise ScenarioError(flaw.what, flaw.hint, ("surface", *where)) from None
-    if r == 0.0 and found.sharp == 0.0:
-        what = "a point on an edge has no direction to be pushed in"
-        hint = (
-            "give `corner_radius`, or the ball a `radius`"
-            if surface.closed
-            else ("close the profile and give `corner_radius`, or give the ball a `radius`")
-        )
-        raise ScenarioError(what, hint, ("ball", "radius"))
-    if not found.reach > r:
-        what = f"a ball of radius {r:g} m touches this profile in two places at once somewhere"
-        hint = f"smaller than {found.reach:.4g} m it touches one; or make a contact for each side"
-        raise ScenarioError(what, hint, ("ball", "radius"))
-    offset = len(at.tab)
-    at.tab.extend(found.numbers)
-    body = at.body(surface.body, "surface", "body", near=surface.at, off=1.0)
-    for x, y in (found.outline.min(axis=0), found.outline.max(axis=0)):
-        at.local(body, surface.frame.moved((float(x), float(y), 0.0)))
-    bends = {"sharp": found.sharp, "reach": found.reach}
-    return {**shaped, **bends, "profile": offset, "closed": int(surface.closed)}, None
-
-
-def side_of(surface, centre):
-    """On which side of an open profile the ball is drawn: 1 left, -1 right."""
-    nearest, side, size = inf, 0.0, 0.0
-    x, y = centre[0], centre[1]
-    for (x0, y0), (x1, y1) in zip(surface.points[:-1], surface.points[1:], strict=True):
-        a, b = x1 - x0, y1 - y0
-        length = sqrt(a * a + b * b)
-        size = max(size, length)
-        along = min(max(((x - x0) * a + (y - y0) * b) / (length * length or 1.0), 0.0), 1.0)
-        far = sqrt((x - x0 - along * a) ** 2 + (y - y0 - along * b) ** 2)
-        if far < nearest:
-            nearest, side = far, a * (y - y0) - b * (x - x0)
-    if nearest <= SIDE * size:
-        what = "the centre is drawn on the profile, so nobody knows on which side it is"
-        raise ScenarioError(what, "draw it a radius away", ("ball", "at"))
-    return 1 if side >= 0.0 else -1
 
 
 # --- kernels -----------------------------------------------------------------------------

@@ -29,10 +29,11 @@ from trsim.elements.contract import (
 from trsim.elements.frames import arm, dot, plus, push, scaled, spin, twist, velocity
 from trsim.elements.loads import Load
 from trsim.errors import ScenarioError
-from trsim.fields import Function, FunctionSpec, point
+from trsim.fields import point
 from trsim.kernels.columns import V3, i8
 from trsim.kernels.lazy import internal
 from trsim.laws.functions import value
+from trsim.varying import Function, FunctionSpec
 
 UNIT_VECTORS = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 

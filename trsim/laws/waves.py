@@ -17,6 +17,7 @@ only what is so at its ends.  What is nothing there does not swing.
 from math import inf
 
 from trsim.kernels.lazy import internal
+from trsim.laws.corners import in_row, into_row, ranges_of
 from trsim.laws.functions import (
     EXPRESSION,
     HEAD,
@@ -25,11 +26,8 @@ from trsim.laws.functions import (
     RESULT,
     SLOTS,
     WIDTH,
-    in_row,
-    into_row,
     operands,
     operations,
-    ranges_of,
 )
 from trsim.laws.operations import ATAN2, COS, DIV, LOG, MUL, POW, SIN, TAN
 

@@ -26,7 +26,8 @@ from annotated_types import Gt, Le
 from pydantic import BeforeValidator, model_validator
 
 from trsim.errors import ScenarioError, closest, described
-from trsim.fields import EMPTY, Flag, Function, Spec, Unit
+from trsim.fields import EMPTY, Flag, Spec, Unit
+from trsim.varying import Function
 
 EXAMPLE = """
 bodies:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from trsim.expressions import FUNCTIONS
-from trsim.fields import TABLE_KEYS
+from trsim.varying import TABLE_KEYS
 
 S = "s = (x - x0)/(x1 - x0), cut to 0..1"
 CALLS = {

@@ -34,7 +34,6 @@ from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.rotations import rotation_vector
 from trsim.elements.scene import Scene, scene
 from trsim.errors import ModelError
-from trsim.fields import FunctionSpec
 from trsim.kernels.signatures import A1, void
 from trsim.scenario.initial import Initial
 from trsim.scenario.scenario import SolverSpec
@@ -44,6 +43,7 @@ from trsim.solve.march.record import N_PEAK, PEAK_MAX, PEAK_MIN
 from trsim.solve.outcome import Block, Outcome, new_record, statistics
 from trsim.solve.start.consistent import Start, positions, start
 from trsim.solve.start.statics import INDIFFERENT
+from trsim.varying import FunctionSpec
 
 Array = NDArray[np.float64]
 Verdict = Literal["stable", "indifferent", "unstable"]

@@ -8,8 +8,8 @@ from trsim.assemble.layout import all_names
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.sections import without_play
 from trsim.errors import some
-from trsim.fields import FunctionSpec
 from trsim.instants import peaked
+from trsim.varying import FunctionSpec
 
 UNREAD = ("cases", "sweep")  # keys a scenario may have that `run` does not act on
 SHOWN = 4  # names of a list

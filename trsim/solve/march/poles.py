@@ -19,7 +19,8 @@ from trsim.elements.contract import compiled
 from trsim.elements.prescribed import began
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import copy_table
-from trsim.laws.functions import HEAD, N_IN, RESULT, SLOTS, in_row, ranges_of, value
+from trsim.laws.corners import in_row, ranges_of
+from trsim.laws.functions import HEAD, N_IN, RESULT, SLOTS, value
 from trsim.laws.waves import seen
 from trsim.solve.march.calls import LAST_AT, SEARCH
 from trsim.solve.march.corners import NONE, show

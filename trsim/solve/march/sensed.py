@@ -41,9 +41,8 @@ from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
 from trsim.kernels.packed import I1, f8, i8
-from trsim.laws.functions import (
+from trsim.laws.corners import (
     CLEAR,
-    FREE,
     UNSURE,
     brief,
     corner,
@@ -54,6 +53,7 @@ from trsim.laws.functions import (
     piece_at,
     sensed,
 )
+from trsim.laws.functions import FREE
 from trsim.solve.march.calls import IMPLICIT_AT, LAST_AT, SEARCH, STAGES_AT, STEP_AT
 from trsim.solve.march.corners import NONE, show
 from trsim.solve.march.dense_output import build
@@ -240,12 +240,12 @@ def corner_at(s, n, place, t):
 
 
 @internal
-def root(s, r, b, corner, above, part):
+def root(s, r, b, whose, above, part):
     """Where u leaves its piece between two places of the step, just behind it.
 
-    corner: the function, and where in tab its place is.
+    whose: the function, and the place of the corner in tab.
     """
-    (n, place), (low, high), t, h = corner, part, b.t, b.h
+    (n, place), (low, high), t, h = whose, part, b.t, b.h
     least, most = ends_of(s.tab, s.feature[n, OFFSET], place)
     end = most if above else least
     f_high = corner_at(s, n, place, t + high * h)[0] - end
