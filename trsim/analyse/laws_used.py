@@ -23,12 +23,13 @@ from trsim.elements.friction_law import Friction
 from trsim.elements.prescribed import rates_at
 from trsim.elements.sprung import RATE, X
 from trsim.errors import UsageError
-from trsim.fields import FunctionSpec, Spec
+from trsim.fields import Spec
 from trsim.laws import functions
 from trsim.laws.contact import Pair, delivered_restitution, elastic, stored
 from trsim.laws.tables import smoothstep
 from trsim.scenario.load import loads, unit_of
 from trsim.store.read import Run
+from trsim.varying import FunctionSpec
 
 POINTS = 2001  # of a curve
 SECTIONS = ("joints", "drives", "sensors", "forces", "events")

@@ -8,7 +8,6 @@ f is the elastic force, d the damper (sprung.py).  l_0 is the length as drawn un
 l = 0 the line has no direction and the force is zero.
 """
 
-from math import dist
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge
@@ -53,8 +52,7 @@ class Spring(Sprung):
     @property
     def goes_slack(self):
         """The channel that falls through a value where it goes slack, and the value."""
-        free = dist(*self.points) if self.free_length is None else self.free_length
-        return ("length", free) if self.tension_only else None
+        return ("length", free_length(self)) if self.tension_only else None
 
 
 class Own(Law):
