@@ -437,6 +437,21 @@ def test_as_slow_dynamics_and_the_ratio_explains_the_rest(speed, apart):
     assert np.abs(force)[1:].max() < apart * still["touch.normal_force"].max()
 
 
+@pytest.mark.parametrize("below", [1e-4, 1e-7])
+def test_an_event_in_passing(below):
+    """A sensor that comes to its value and turns back within a step."""
+    text = PENDULUM.format(x=0.2, x0=0, y=0, bodies="ground, rod", motion='position: "3.01*t"')
+    text = text.replace("sensors: {", "sensors: {height: {type: point, body: rod, at: [0.6, 0, 0],"
+                        " axis: [0, 1, 0]}, ")  # fmt: skip
+    text += f"events: {{top: {{when: height, value: {0.6 - below!r}, crosses: both,"
+    text += " do: {record: true}}}"
+    r = path(text, every=0.5)
+    away = np.arccos(1 - below / 0.6)
+    wanted = [(np.pi / 2 - away) / 3.01, (np.pi / 2 + away) / 3.01]
+    assert events(r, USER)[:, 0] == pytest.approx(wanted, abs=1e-10)
+    assert dict(r.outcome.fired) == {"top": 2}
+
+
 SPACE = """
 planar: false
 bodies:
