@@ -238,7 +238,7 @@ solver: {end: 1}
             "    ^\n"
             "  Did you mean 'solver'?  Known: title, planar, gravity, frame, parameters, points,"
             " bodies, joints, drives, sensors, forces, contact_laws, initial, solver"
-            " ... (15 more)",
+            " ... (16 more)",
         ),
     ],
 )

@@ -165,11 +165,16 @@ class Looks:
                 self.direction[k] = float(np.sign(slip))
 
     def hidden(self, a: Place, b: Place) -> bool:
-        """Whether a contact may close and open again inside a step, or the other way round."""
+        """Whether a contact may close and open again inside a step, or the other way round, or a
+        sensor pass what an event watches it for and come back."""
         h, first, last = b.t - a.t, self.gaps(a), self.gaps(b)
+        ends = [(first[e], last[e], inside) for e, inside in self.closed.items()]
+        watched = zip(self.values(a, None), self.values(b, None), strict=True)
+        for k, (x, y) in enumerate(watched):
+            if np.isfinite(x[1]) and self.left[k] > 0 and self.side[k] != 0.0:
+                ends.append((x, y, self.side[k] > 0.0))
         return any(
-            turns_through(first[e], last[e], h, -1.0 if inside else 1.0, self.work.size)
-            for e, inside in self.closed.items()
+            turns_through(x, y, h, -1.0 if inside else 1.0, self.work.size) for x, y, inside in ends
         )
 
     def whose(self, k: int) -> int:

@@ -1,0 +1,127 @@
+"""Friction along a static path: against the travel, sticking, and locked."""
+
+import numpy as np
+import pytest
+
+from .test_static_path import TURNS, G, events, path, row
+
+SLIDE = """
+PLANE
+bodies:
+  block: {mass: 2 kg, inertia: [0.01, 0.01, 0.01], at: [0, 0, 0]}
+joints:
+  guide: {type: prismatic, bodies: [BODIES], axis: [1, 0, 0]}
+drives:
+  motor: {joint: guide, position: "SIGN*0.05*sin(2*pi*t)"}
+forces:
+  rub: {type: joint_friction, joint: guide, friction: {LAW}}
+  spring: {type: joint_spring, joint: guide, elastic: "100*stretch"}
+"""
+LAWS = (
+    "law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1 m/s",
+    "law: sticking, coefficient: 0.3, static_coefficient: 0.5, stribeck_speed: 1 mm/s, "
+    "bristle_stiffness: 1e4",
+)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("plane", ["planar: true", "planar: false"])
+@pytest.mark.parametrize("bodies, side", [("ground, block", 1), ("block, ground", -1)])
+def test_loop_of_a_slide(law, plane, bodies, side):
+    """100 x + mu m g, the sign that of the travel: full at once, whatever the speed of the law."""
+    text = SLIDE.replace("LAW", law).replace("PLANE", plane).replace("BODIES", bodies)
+    r = path(text.replace("SIGN", str(side)))
+    before = np.concatenate([[1.0], np.sign(np.diff(np.sin(2 * np.pi * r.t)))])
+    wanted = side * (100 * 0.05 * np.sin(2 * np.pi * r.t) + 0.3 * 2 * G * before)
+    assert r["motor.force"] == pytest.approx(wanted, abs=1e-8)
+    turns = events(r, TURNS)
+    assert turns[:, 0] == pytest.approx([0.25, 0.75], abs=1e-6)
+    assert set(turns[:, 1]) == {row(r, "rub")}
+    assert r["energy.work.friction"][-1] == pytest.approx(-0.3 * 2 * G * 0.2, rel=1e-5)
+
+
+DRAGGED = """
+planar: true
+bodies:
+  puller: {mass: 1 kg, inertia: 0.01 kg*m^2, at: [1, 0]}
+  block: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [0, 0]}
+joints:
+  rail: {type: prismatic, bodies: [ground, puller], axis: [1, 0]}
+  guide: {type: prismatic, bodies: [ground, block], axis: [1, 0]}
+drives:
+  motor: {joint: rail, position: "0.1*sin(2*pi*t)"}
+forces:
+  rub: {type: joint_friction, joint: guide,
+        friction: {law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1 mm/s}}
+  spring: {type: spring_damper, bodies: [block, puller], points: [[0, 0], [1, 0]],
+           stiffness: 200, damping: 50}
+"""
+
+
+def test_a_block_dragged_by_a_spring_sticks_and_slides():
+    """The play of a spring with dry friction: it sticks while the spring is turned round."""
+    r = path(DRAGGED, end=2.0, every=5e-3)
+    assert r.outcome.statistics["rejected_steps"] < 30
+    f = 0.3 * 2 * G / 200
+    fine = np.linspace(0, 2, 40_001)
+    block = [0.0]
+    for x in 0.1 * np.sin(2 * np.pi * fine[1:]):
+        block.append(min(max(block[-1], x - f), x + f))
+    wanted = np.interp(r.t, fine, block)
+    assert r["block.position"][:, 0] == pytest.approx(wanted, abs=1e-6)
+    x = 0.1 * np.sin(2 * np.pi * r.t)
+    assert r["motor.force"] == pytest.approx(200 * (x - wanted), abs=2e-4)
+    turned = (0.5 * np.pi + np.arccos(1 - 2 * f / 0.1)) / (2 * np.pi)
+    assert events(r, TURNS)[0, 0] == pytest.approx(turned, abs=1e-5)
+
+
+def test_a_block_on_an_incline_is_held_by_friction():
+    """Nothing holds it but what rubs: it stays where it is drawn as long as it can."""
+    text = """
+planar: true
+bodies: {block: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [0, 0]}}
+joints: {guide: {type: prismatic, bodies: [ground, block], axis: [4, 3]}}
+forces:
+  rub: {type: joint_friction, joint: guide,
+        friction: {law: modified_coulomb, coefficient: 0.8, v0: 0, v1: 1 mm/s}}
+  push: {type: applied_load, body: block, at: [0, 0], direction: [-4, -3], force: "10*t"}
+"""
+    r = path(text)
+    slides = 2 * G * (0.8 * 0.8 - 0.6) / 10
+    assert r.outcome.status == "limit"
+    assert r.outcome.time == pytest.approx(slides, abs=1e-6)
+    assert r["block.position"][:, 0] == pytest.approx(0, abs=1e-6)
+
+
+THREAD = """
+planar: false
+bodies:
+  nut: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, 0, 0]}
+  spindle: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, 0, 0]}
+joints:
+  flank: {type: inplane, bodies: [ground, nut], at: [0.1, 0, 0], axis: [0, 0, 1]}
+  bearing: {type: revolute, bodies: [ground, spindle], at: [0, 0, 0], axis: [0, 1, 0]}
+  thread: {type: screw, bodies: [nut, spindle], at: [0, 0, 0], axis: [0, 1, 0], pitch: 6 mm}
+drives: {ram: {type: actuator, bodies: [ground, nut], points: [[0, -1, 0], [0, 0, 0]],
+               position: 0.01*t}}
+forces:
+  rub: {type: joint_friction, joint: thread, radius: 10 mm,
+        friction: {law: modified_coulomb, coefficient: MU, v0: 0, v1: 1e-6}}
+  twist: {type: torsion_spring, joint: bearing, stiffness: 1}
+"""
+LEAD = np.arctan(6e-3 / (2 * np.pi * 10e-3))
+
+
+def test_a_thread_that_is_pushed():
+    """F r tan(lead - rho) = T, as long as friction lets it: tan(rho) = mu."""
+    r = path(THREAD.replace("MU", "0.05"))
+    torque = 0.01 * r.t * 2 * np.pi / 6e-3
+    pushed = torque / (10e-3 * np.tan(LEAD - np.arctan(0.05))) + G
+    assert r["ram.force"][1:] == pytest.approx(pushed[1:], rel=1e-6)
+
+
+def test_a_thread_that_locks_itself():
+    r = path(THREAD.replace("MU", "0.15"))
+    assert np.tan(LEAD) < 0.15
+    assert r.outcome.status == "limit" and "friction lock" in r.outcome.reason
+    assert r.outcome.time < 1e-4
