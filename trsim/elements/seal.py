@@ -47,9 +47,9 @@ from trsim.elements.frames import (
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, vector
 from trsim.fields import point as place
-from trsim.kernels.columns import V3, f8, i8
+from trsim.kernels.columns import V3, f8, i8, run
 from trsim.kernels.lazy import internal
-from trsim.laws.friction import modified_coulomb
+from trsim.laws.friction import CODES, N_PARAMETERS, friction_force
 from trsim.laws.seal import NODES, WEIGHTS, line_load, pressed_part
 
 MOST = 1000  # springs
@@ -130,8 +130,8 @@ class Own(Edge):
     at: f8
     exponent: f8
     damping: f8
-    friction: f8
-    full_from: f8
+    friction_law: i8  # one of CODES: none or modified_coulomb
+    friction: run(f8, N_PARAMETERS)
 
 
 def pack(name, spec, at):
@@ -144,8 +144,11 @@ def pack(name, spec, at):
     across = tuple(q - p for p, q in zip(line.start, line.end, strict=True))
     length = sqrt(sum(c * c for c in across))
     at.local(j, line.end)
+    rubs = "modified_coulomb" if spec.friction > 0.0 else "none"
     own = Own.packed(
-        spec, **points(at, i, j, plane.at, line.start), axis=at.axes(i, direction(plane.normal)),
+        spec, friction_law=CODES[rubs],
+        friction=(spec.friction, 0.0, spec.full_from, *[0.0] * (N_PARAMETERS - 3)),
+        **points(at, i, j, plane.at, line.start), axis=at.axes(i, direction(plane.normal)),
         along=at.axes(j, across), length=length, springs=spec.springs or 0,
     )  # fmt: skip
     stiffness = spec.load * length / spec.at**spec.exponent
@@ -182,7 +185,7 @@ def meets(scene, e, n, p_j, compression):
 def lossy(own, q, rate, v_t, n):
     """Damping and friction on body j of a load q, N, and their power."""
     speed = sqrt(dot(v_t, v_t))
-    slow = modified_coulomb(q, speed, own.friction, 0.0, own.full_from)
+    slow, _ = friction_force(own.friction_law, q, speed, 0.0, own.friction)
     damp = max(q * own.damping * rate, -q)
     f = scaled(damp, n)
     if speed > 0.0:
@@ -239,7 +242,7 @@ def force(t, scene, e):
         u = first / whole if whole > 0.0 else 0.0
         c_i, c_j, _, _ = meets(scene, e, n, plus(p_j, scaled(u, along)), x_0 + u * (x_1 - x_0))
         push_apart(scene.F, own.i, c_i, own.j, c_j, scaled(own.load * own.length * whole, n))
-        if own.damping == 0.0 and own.friction == 0.0:
+        if own.damping == 0.0 and own.friction_law == 0:
             return
     for k in range(many(own)):
         u, weight = place_of(own, low, high, k)
@@ -335,6 +338,7 @@ ELEMENT = Element(
         Channel("force", "N", "on the body of the line, world axes", 3),
     ),
     turning=turning,
+    slides=(Own.columns["friction_law"].at, Own.columns["friction"].at),
     loads={"normal_force": "contact force"},
     kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},
     example="""

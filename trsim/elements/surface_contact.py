@@ -385,6 +385,7 @@ ELEMENT = Element(
         Channel("force", "N", "contact force on the body of the ball, world axes", 3),
     ),
     turning=turning,
+    slides=(Own.columns["friction_law"].at, Own.columns["friction"].at),
     picture="stop",
     loads={"contact_force": "contact force"},
     kernels={
