@@ -93,10 +93,7 @@ def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
         return {**shaped, **bends}, free / R if code == SPHERE else None
     side = int(free) if surface.closed else side_of(surface, centre)
     try:
-        if surface.smooth:
-            found = smooth(surface.points, surface.closed, side, SPLINE)
-        else:
-            found = profile(surface.points, surface.corner_radius, surface.closed, side)
+        found = pieces_of(surface, side)
     except Flaw as flaw:
         where = ("points",) if flaw.point is None else ("points", flaw.point)
         raise ScenarioError(flaw.what, flaw.hint, ("surface", *where)) from None
@@ -119,6 +116,13 @@ def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
         at.local(body, surface.frame.moved((float(x), float(y), 0.0)))
     bends = {"sharp": found.sharp, "reach": found.reach}
     return {**shaped, **bends, "profile": offset, "closed": int(surface.closed)}, None
+
+
+def pieces_of(surface, side):
+    """The profile of a surface, whose free side is as laws/profiles.py has it.  Raises Flaw."""
+    if surface.smooth:
+        return smooth(surface.points, surface.closed, side, SPLINE)
+    return profile(surface.points, surface.corner_radius, surface.closed, side)
 
 
 def side_of(surface, centre):

@@ -386,7 +386,7 @@ ELEMENT = Element(
     ),
     turning=turning,
     slides=(Own.columns["friction_law"].at, Own.columns["friction"].at),
-    picture="stop",
+    picture="touch",
     loads={"contact_force": "contact force"},
     kernels={
         "force": force,

@@ -67,9 +67,11 @@ def forces(run: Run, moved: Motion, look: Look, magnified: float) -> Iterator[Fo
             yield Force(joint.name, contact(moved, joint, look, magnified), vector)
     for name, spec in moved.drawn.scenario.forces.items():
         channel = f"{name}.force"
-        if elements.load(spec.type).picture != "stop" or run.units.get(channel) != "N":
+        picture = elements.load(spec.type).picture
+        if picture not in ("stop", "touch") or run.units.get(channel) != "N":
             continue  # that of an angle is a torque
-        body, at = stop_point(moved, spec)
+        touches = picture == "touch"
+        body, at = (spec.ball.body, np.array(spec.ball.at)) if touches else stop_point(moved, spec)
         if moved.drawn.has(body):
             place = moved.point(body, at)
             if look.normal is not None:

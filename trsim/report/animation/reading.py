@@ -117,6 +117,7 @@ def held(drawn: Drawing) -> tuple[Spot, ...]:
     for spec in drawn.scenario.forces.values():
         body, at = getattr(spec, "body", None), getattr(spec, "at", None)
         found += [(body, np.array(at))] if body in drawn.bodies and at is not None else []
+        found += [(spec.ball.body, np.array(spec.ball.at))] if hasattr(spec, "ball") else []
     found += [(place.body, place.at) for rope in drawn.ropes for place in rope.places]
     return tuple((body, at) for body, at in found if body != GROUND)
 

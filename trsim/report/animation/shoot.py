@@ -5,7 +5,17 @@ from itertools import product
 import numpy as np
 
 from trsim.errors import UsageError
-from trsim.report.animation import belts, bodies, curves, fittings, lines, ropes, threads, wheels
+from trsim.report.animation import (
+    belts,
+    bodies,
+    curves,
+    fittings,
+    lines,
+    ropes,
+    threads,
+    touched,
+    wheels,
+)
 from trsim.report.animation.bodies import LONG
 from trsim.report.animation.drawing import SLIDES, Array, Drawing
 from trsim.report.animation.forces import arrows
@@ -42,6 +52,7 @@ def shoot(run: Run, magnified: float) -> Film:
         *belts.belts(moved, sizes),
         *ropes.ropes(moved, sizes),
         *fittings.stops(moved, sizes),
+        *touched.touched(moved, sizes),
         *fittings.pins(moved, sizes),
         *fittings.bearings(moved, sizes, magnified),
     ]
