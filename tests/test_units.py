@@ -446,7 +446,7 @@ def test_units_of_numbers(every):
 
 def test_an_export_is_a_table(every, tmp_path):
     """What is exported is read again as a motion, and as an overlay, in its units."""
-    from trsim.analyse.compare import reference
+    from trsim.analyse.reference import given
 
     run = read(every)
     export(run, ["angle"], tmp_path / "load.csv")
@@ -455,15 +455,15 @@ def test_an_export_is_a_table(every, tmp_path):
     motion = loads(text, folder=tmp_path).drives["motor"].position
     np.testing.assert_array_equal(motion.y, run.channel("angle"))
     assert motion.units == ("s", "rad")
-    curve = reference(tmp_path / "load.csv", "angle", "", ("s", "rad"))
-    np.testing.assert_array_equal(curve.x, run.channel("angle"))
+    table = given(tmp_path / "load.csv", "time", {"angle": "rad"}, "s")
+    np.testing.assert_array_equal(table.y["angle"], run.channel("angle"))
     lines = (tmp_path / "load.csv").read_text().replace("[rad]", "(mrad)")
     (tmp_path / "load.csv").write_text(lines)
-    curve = reference(tmp_path / "load.csv", "angle", "", ("s", "rad"))
-    np.testing.assert_allclose(curve.x, 1e-3 * run.channel("angle"), rtol=1e-15)
+    table = given(tmp_path / "load.csv", "time", {"angle": "rad"}, "s")
+    np.testing.assert_allclose(table.y["angle"], 1e-3 * run.channel("angle"), rtol=1e-15)
     (tmp_path / "load.csv").write_text(lines.replace("(mrad)", "[mard]"))
     with pytest.raises(UsageError) as caught:
-        reference(tmp_path / "load.csv", "angle", "", ("s", "rad"))
+        given(tmp_path / "load.csv", "time", {"angle": "rad"}, "s")
     assert "Did you mean 'mrad'?" in caught.value.hint
     assert caught.value.place.show().endswith("load.csv:1:10")
     assert isinstance(caught.value, TrsimError)

@@ -123,14 +123,14 @@ def differences(
         if table.time is None:
             raise _unlike(of, own, its, table.name)
         how = f"along time: {of} has {_count(own)} in the run and {_count(its)} in the table"
-        found = off(time, x, table.time[inside], y[inside], table.x[inside], y)
+        found = off((time, x), (table.time[inside], y[inside], table.x[inside]), y)
         return [_compared(found, how, channel, table.name)]
     out = []
     for k, one in enumerate(own):
         other = its[k] if same else its[0]
         kept = other.rows(inside)
         at, asked = (column[kept] for column in (other.rows(table.x), other.rows(y)))
-        found = off(one.rows(s), one.rows(x), at, asked, at, y, one.way)
+        found = off((one.rows(s), one.rows(x)), (at, asked, at), y, one.way)
         out.append(_compared(found, _told(k, own, its), channel, table.name))
     return out
 
@@ -172,13 +172,15 @@ def _compared(found: Off | None, how: str, channel: str, name: str) -> Off:
 
 
 def off(
-    s: Array, x: Array, at: Array, y: Array, shown: Array, whole: Array, way: int = 1
+    curve: tuple[Array, Array], rows: tuple[Array, Array, Array], whole: Array, way: int = 1
 ) -> Off | None:
     """A curve x(s) less rows y at some places; None where there are none in common.
 
-    s     that of the curve; it goes one way but for rows that are left out
-    shown the abscissa of the rows that is told; whole: the values whose range counts
+    curve  s and x; s goes one way but for rows that are left out
+    rows   places, y, and the abscissa of theirs that is told
+    whole  the values whose range counts
     """
+    (s, x), (at, y, shown) = curve, rows
     u, v = way * s, way * at
     far = max(float(np.ptp(s)), 1e-300)
     low, high = upright(u, x, SAME * far)

@@ -153,7 +153,7 @@ def figure(
     for a, (si, channels) in zip(axes[:, 0], groups.items(), strict=True):
         scale, text = first.display(si)
         for channel in channels:
-            lines(a, every, tables, channel, of, within, (factor, scale))
+            lines(a, (every, tables), channel, of, (within, (factor, scale)))
         for one in (one for one in apart if one.channel in channels):
             x, y = np.full(2, one.off.at * factor), one.off.value * scale
             ends = [y, y - one.off.largest * scale]
@@ -169,10 +169,11 @@ def figure(
 
 
 def lines(
-    axes: Any, every: list[Curves], tables: list[Given], channel: str, of: Plotted,
-    within: Limits, factors: tuple[float, float],
+    axes: Any, curves: tuple[list[Curves], list[Given]], channel: str, of: Plotted,
+    window: tuple[Limits, tuple[float, float]],
 ) -> None:  # fmt: skip
-    """One channel of all runs, and of the tables that have it."""
+    """One channel of all runs, and of the tables that have it; in a window, in display units."""
+    (every, tables), (within, factors) = curves, window
     number = of.y.index(channel)
     several = len(of.y) > 1
     for k, one in enumerate(every):

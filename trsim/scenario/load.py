@@ -172,13 +172,18 @@ def _chosen(error: ValidationError, path: tuple, data: Any) -> Iterator[dict]:
             )
             for one in ones:
                 one["shape"] = _shape(one, short)
-        best = min(of_tag.values(), key=lambda ones: sum(one["shape"] is not None for one in ones))
+        best = min(of_tag.values(), key=_unfit)
         shapes = dict.fromkeys(one["shape"] for ones in of_tag.values() for one in ones)
         if len(of_tag) > 1 and all(one["shape"] for one in best):
             whole = {**best[0], "here": root, "shape": " or ".join(filter(None, shapes))}
             yield {**whole, "type": "union", "input": _value(data, root)}
         else:
             yield from best
+
+
+def _unfit(ones: list[dict]) -> tuple[int, int]:
+    """How little a branch fits: what has another shape, and how soon something is wrong in it."""
+    return sum(one["shape"] is not None for one in ones), -max(len(one["here"]) for one in ones)
 
 
 def _in_tree(one: dict, path: tuple, data: Any) -> tuple[tuple, tuple, Any]:

@@ -141,7 +141,7 @@ def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
         places = getattr(force, "points", None) or (getattr(force, "at", None),) * 2
         for body, at in zip(getattr(force, "bodies", ()), places, strict=False):
             add(body, at)
-        for end in (getattr(force, "point", None), getattr(force, "wall", None)):
+        for end in map(lambda key: getattr(force, key, None), ("point", "wall", "ball", "surface")):
             add(getattr(end, "body", None), getattr(end, "at", None))
     found.pop("ground", None)
     return found

@@ -25,7 +25,10 @@ from trsim.kernels.packed import A1, A2, I1, f8
 from trsim.kernels.signatures import float64, void
 from trsim.kernels.vectors import clear, clear_table, copy_to
 
-BY_PLACE, BY_SPEED, BY_LOAD, SLOWNESS = range(4)  # of `steps`: of the differences; see `travel`
+BY_PLACE, BY_SPEED, BY_LOAD, SLOWNESS, TIME = range(
+    5
+)  # of `steps`: of the differences; see `travel`
+STATE, LOADS, ROOM = 4, 5, 6  # rows of `room`, behind those of differences
 
 
 @compiled(void(SCENE, A1, A1, f8))
@@ -111,14 +114,15 @@ def put_difference(s, A, c, room, size):
         A[k, c] -= (room[2, k] - room[3, k]) / size
 
 
-@compiled(void(SCENE, f8, A1, A1, I1, A1, A2, A2))
-def system(s, t, y, lam, pressing, steps, room, A):
+@compiled(void(SCENE, I1, A1, A2, A2))
+def system(s, pressing, steps, room, A):
     """A at a state with its multipliers.
 
     pressing: rows whose reactions make friction; steps: of the differences, the second one 0 where
-    nothing rubs; room (4, n_y or n_v + m): states and forces.
+    nothing rubs, and the time; room (6, n_y or n_v + m): states and forces, and behind them the
+    state and the multipliers.
     """
-    n, away = s.n_v, room[1]
+    n, away, t, y, lam = s.n_v, room[1], steps[TIME], room[STATE], room[LOADS]
     clear_table(A)
     unbalanced(s, t, y, lam, room[2])
     put_rows(s, A)

@@ -22,7 +22,7 @@ from trsim.elements.contract import CONTACT, FIRST_ROW, FLIGHT, IMPACT_SPEED, PH
 from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Scene, scene
 from trsim.laws.friction import CODES
-from trsim.solve.path.balance import SLOWNESS, system, travel, unbalanced
+from trsim.solve.path.balance import LOADS, ROOM, SLOWNESS, STATE, TIME, system, travel, unbalanced
 
 Array = NDArray[np.float64]
 
@@ -95,13 +95,13 @@ class Equations:
         self.n, self.m = w.n_v, w.m
         self.pressing = pressing(w)
         gaps = [g for g in w.contact_par[:, 3].tolist() if np.isfinite(g)]
-        self.steps = np.zeros(4)
+        self.steps = np.zeros(5)
         self.steps[:3] = STEP, IN_RAMP * SLOW * RAMP * w.size if self.rubs else 0.0, LOAD
         self.steps[SLOWNESS] = SLOW
         if gaps:
             self.steps[0] = min(STEP, IN_GAP * min(gaps) / w.size)
         wide = max(len(begun.y), self.n + self.m)
-        self.room = np.zeros((4, wide))
+        self.room = np.zeros((ROOM, wide))
         self.unit = np.tile([w.size, w.size, 1.0] if w.d == 3 else [w.size] * 3 + [1.0] * 3,
                             w.n_r - 1)  # fmt: skip
         self.anchor = begun.y.copy()
@@ -147,7 +147,9 @@ class Equations:
     def matrix(self, t: float, y: Array, lam: Array) -> Array:
         A = np.zeros((self.n + self.m, self.n + self.m))
         self.steps[2] = LOAD * max(float(np.abs(lam).max(initial=0.0)), 1e-3 * self.load)
-        system(self.work, t, y, lam, self.pressing, self.steps, self.room, A)
+        self.steps[TIME] = t
+        self.room[STATE, : len(y)], self.room[LOADS, : len(lam)] = y, lam
+        system(self.work, self.pressing, self.steps, self.room, A)
         return A
 
     def inverse(self, A: Array) -> Array | None:
