@@ -348,7 +348,7 @@ FIXED = {
              "contact_length": "m", "force": "N"},
     "surface_contact": {"normal_force": "N", "friction_force": "N", "contact_force": "N",
                         "penetration": "m", "penetration_rate": "m/s", "sliding_speed": "m/s",
-                        "place": "m", "force": "N"},
+                        "force_behind": "N", "place": "m", "force": "N"},
 }  # fmt: skip
 # seen in the scene above
 DEPENDS = {

@@ -7,6 +7,7 @@ import pytest
 
 from trsim.assemble.equations import gaps
 from trsim.errors import ScenarioError
+from trsim.solve.diagnose.doubts import doubts
 from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, ONSET, SEPARATION
 
 from ..runs import built, energy_error, run
@@ -166,3 +167,9 @@ def test_what_is_refused(wrong, what):
     text = text.replace("line: {body: right, start: [0.6, 0.1, 0.2], end: [0.9, 0.4, -0.5]}", wrong)
     with pytest.raises(ScenarioError, match=what):
         built(TWO_BODIES + text)
+
+
+def test_a_seal_pressed_through_its_plane_is_told():
+    got = run(DOOR.replace("EXP", "1").replace("velocity: [0, -0.5, 0]", "velocity: [0, -5, 0]"))
+    words = doubts(got.scenario, got.mechanism, got.outcome)
+    assert any("went through the plane" in one for one in words)

@@ -480,6 +480,12 @@ BENT = "shape: profile, points: [[-1, 0], [0, 0], [1, 1]]"
     ("shape: plane", "radius: 1", "{normal: impact, stiffness: 1e7, damping: 1, ramp: 1, "
      "restitution: 1}", "restitution is no number"),
     ("shape: plane", "radius: 1", "{normal: flores, stiffness: 1e7}", "needs restitution"),
+    ("shape: profile, points: [[0.32, 1], [0.5, 0.4], [0, 0], [-0.5, 0.4], [-0.32, 1]], "
+     "smooth: true, at: [0, -0.7]", "radius: 0.6", HARD, "two places at once"),
+    ("shape: profile, smooth: true, points: [[0, 0], [1, 0], [0.5, 0]]", "radius: 0.1", HARD,
+     "turns back"),
+    ("shape: profile, smooth: true, closed: true, points: [[0, 0], [1, 0], [0.5, 0]]",
+     "radius: 0.1", HARD, "turns"),
     ("shape: sphere, radius: 1", "radius: 1", HARD[:-1] + f", friction: {BRISTLES}}}", "sphere"),
 ])  # fmt: skip
 def test_what_is_refused(surface, ball, law, what):
@@ -492,4 +498,52 @@ def test_a_contact_too_soft_for_its_ball_is_told():
     got = run(BALL.format("shape: plane", "radius: 0.1", HARD.replace("1e7", "1e4"))
               + "gravity: [0, -9.81]\nsolver: {end: 1}\n")  # fmt: skip
     told = doubts(got.scenario, got.mechanism, got.outcome)
-    assert any("deep into a ball" in text for text in told)
+    assert any("too deep" in text for text in told)
+
+
+@pytest.mark.parametrize("radius, law", [
+    (0.0, RAMP), (0.1, "{law: coulomb, coefficient: 0.3}"), (0.1, "{law: none}"),
+    (0.1, RAMP.replace("0.3", "0")),
+])  # fmt: skip
+@pytest.mark.parametrize("lever", ["rolling_resistance", "spinning_friction"])
+def test_levers_that_mean_nothing_are_refused(radius, law, lever):
+    text = BALL.format("shape: plane", f"radius: {radius}", HARD[:-1] + f", friction: {law}}}")
+    with pytest.raises(ScenarioError):
+        built(text.replace("ball: {body", f"{lever}: 0.01, ball: {{body"))
+
+
+VALLEY = """
+bodies: {{ball: {{mass: 0.1, inertia: 1e-4, at: [{x}, {y}], velocity: [0.5, 0]}}}}
+forces:
+  v: {{type: surface_contact, surface: {{body: ground, shape: profile, {points}}},
+      ball: {{body: ball, at: [{x}, {y}], radius: {r}}}}}
+contact_laws: {{l: {{normal: impact, stiffness: {k}, damping: 5, ramp: 1e-3}}}}
+gravity: [0, -9.81]
+solver: {{end: 1}}
+"""
+
+
+def told(**keys):
+    got = run(VALLEY.format(**keys), fails=None)
+    return doubts(got.scenario, got.mechanism, got.outcome)
+
+
+def test_a_ball_on_the_other_side_is_told():
+    """It is drawn below a valley, beside it, and is thrown over its edge into it."""
+    valley = "points: [[-0.5, 0.1], [0, 0], [0.5, 0.1]]"
+    text = VALLEY.format(x=-0.6, y=0.0, r=0.05, k=1e6, points=valley)
+    text = text.replace("velocity: [0.5, 0]", "velocity: [1, 3]").replace("end: 1", "end: 1.6")
+    got = run(text)
+    assert got["v.force_behind"].max() > 0.0
+    words = doubts(got.scenario, got.mechanism, got.outcome)
+    assert any("not drawn" in one for one in words)
+    # a flat plate suits from both sides, and what was drawn above is not behind
+    flat = told(x=0, y=0.06, r=0.05, k=1e7, points="points: [[1, 0], [-1, 0]]")
+    assert flat == ()
+
+
+def test_a_point_through_a_thin_plate_is_told():
+    plate = ("points: [[-1, -0.002], [1, -0.002], [1, 0], [-1, 0]], closed: true, "
+             "corner_radius: 0.0009")  # fmt: skip
+    words = told(x=0, y=1, r=0, k=1e4, points=plate)
+    assert any("too deep" in one for one in words)

@@ -323,6 +323,17 @@ def turning(row):
     return Turning(frames=(own.i, own.j))
 
 
+def doubts(name, spec, largest):
+    """A seal pressed in further than it stands out."""
+    pressed, when = largest(f"{name}.compression", signed=True)
+    if pressed > spec.height > 0.0:
+        yield (
+            f"forces.{name}: the seal was compressed by {pressed:.3g} m at {when:.4g} s and is "
+            f"{spec.height:.3g} m high, so its line went through the plane: a stop is missing, or "
+            "its `load` is too small"
+        )
+
+
 ELEMENT = Element(
     key="seal",
     section="forces",
@@ -338,6 +349,8 @@ ELEMENT = Element(
         Channel("force", "N", "on the body of the line, world axes", 3),
     ),
     turning=turning,
+    judged=lambda row: Own.of(row).height > 0.0,
+    doubts=doubts,
     slides=(Own.columns["friction_law"].at, Own.columns["friction"].at),
     loads={"normal_force": "contact force"},
     kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},

@@ -3,7 +3,7 @@
 A plane, a sphere, a cylinder or a profile; how far from it a place is tells laws/surfaces.py.
 """
 
-from math import inf, sqrt
+from math import inf
 from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge, Gt
@@ -91,11 +91,20 @@ def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
             raise ScenarioError(what, "", ("ball", "radius"))
         bends = {"sharp": inf, "reach": R} if surface.hollow else {"sharp": R, "reach": inf}
         return {**shaped, **bends}, free / R if code == SPHERE else None
-    side = int(free) if surface.closed else side_of(surface, centre)
+    turned = False
     try:
+        side = int(free) if surface.closed else side_of(surface, centre)
+        turned = side < 0 and not surface.closed  # the drawn side is the left one
+        if turned:
+            surface, side = turned_round(surface), 1
         found = pieces_of(surface, side)
     except Flaw as flaw:
-        where = ("points",) if flaw.point is None else ("points", flaw.point)
+        k = (
+            len(surface.points) - 1 - flaw.point
+            if turned and flaw.point is not None
+            else flaw.point
+        )
+        where = ("points",) if k is None else ("points", k)
         raise ScenarioError(flaw.what, flaw.hint, ("surface", *where)) from None
     if r == 0.0 and found.sharp == 0.0:
         what = "a point on an edge has no direction to be pushed in"
@@ -125,19 +134,43 @@ def pieces_of(surface, side):
     return profile(surface.points, surface.corner_radius, surface.closed, side)
 
 
+def turned_round(surface):
+    """The same profile from its last point to the first."""
+    return surface.model_copy(update={"points": surface.points[::-1]})
+
+
+def fits_behind(surface, r):
+    """Whether a ball touches an open profile in one place only from either side."""
+    try:
+        return all(pieces_of(surface, side).reach > r for side in (1, -1))
+    except Flaw:
+        return False
+
+
+def thickness(surface):
+    """How deep something may be in a body before it is nearer to its other side, m."""
+    if surface.shape in ("sphere", "cylinder") and not surface.hollow:
+        return surface.radius
+    if surface.shape != "profile" or not surface.closed or surface.hollow:
+        return inf
+    try:
+        return pieces_of(surface, -1).reach
+    except Flaw:  # it has edges
+        return inf
+
+
 def side_of(surface, centre):
     """On which side of an open profile the ball is drawn: 1 left, -1 right."""
-    nearest, side, size = inf, 0.0, 0.0
-    x, y = centre[0], centre[1]
-    for (x0, y0), (x1, y1) in zip(surface.points[:-1], surface.points[1:], strict=True):
-        a, b = x1 - x0, y1 - y0
-        length = sqrt(a * a + b * b)
-        size = max(size, length)
-        along = min(max(((x - x0) * a + (y - y0) * b) / (length * length or 1.0), 0.0), 1.0)
-        far = sqrt((x - x0 - along * a) ** 2 + (y - y0 - along * b) ** 2)
-        if far < nearest:
-            nearest, side = far, a * (y - y0) - b * (x - x0)
-    if nearest <= SIDE * size:
+    import numpy as np
+
+    line = pieces_of(surface, 1).outline if surface.smooth else np.array(surface.points)
+    start, way = line[:-1], np.diff(line, axis=0)
+    square = np.maximum(np.sum(way * way, axis=1), 1e-300)
+    d = np.array(centre[:2]) - start
+    along = np.clip(np.sum(d * way, axis=1) / square, 0.0, 1.0)
+    far = np.linalg.norm(d - along[:, None] * way, axis=1)
+    k = int(np.argmin(far))
+    if far[k] <= SIDE * float(np.linalg.norm(np.ptp(line, axis=0))):
         what = "the centre is drawn on the profile, so nobody knows on which side it is"
         raise ScenarioError(what, "draw it a radius away", ("ball", "at"))
-    return 1 if side >= 0.0 else -1
+    return 1 if way[k][0] * d[k][1] - way[k][1] * d[k][0] >= 0.0 else -1

@@ -52,7 +52,7 @@ from trsim.elements.frames import (
     scaled,
     velocity,
 )
-from trsim.elements.surface import Surface, shape_of
+from trsim.elements.surface import Surface, fits_behind, shape_of, thickness
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point
 from trsim.kernels.columns import V3, f8, i8, run
@@ -68,7 +68,7 @@ from trsim.laws.friction import (
     on_branch,
     part_of_bristle,
 )
-from trsim.laws.surfaces import PLANE, SPHERE, away
+from trsim.laws.surfaces import PLANE, PROFILE, SPHERE, away, beside
 
 CORNERED, STICKING = CODES["modified_coulomb"], CODES["sticking"]
 DEEP = 0.2  # of the radius of a ball: deeper than that it is no longer one that touches a surface
@@ -148,9 +148,8 @@ def pack(name, spec, at):
     normal = law.on_surface(ball.radius, curvature)
     code, friction = law.friction.numbers
     state = bristles(spec, law.friction, friction, at)
-    if (spec.rolling_resistance or spec.spinning_friction) and code in (CODES["none"], STICKING):
-        what = "resistance to rolling and spinning is regularised like sliding friction"
-        raise ScenarioError(what, "take `modified_coulomb`, with `v0` and `v1`", ("contact",))
+    if spec.rolling_resistance or spec.spinning_friction:
+        check_levers(spec, code, friction)
     own = Own.packed(
         normal, **points(at, i, j, surface.at, ball.at), **shaped,
         u_i=at.axes(i, frame.x), w_i=at.axes(i, frame.y), a_i=at.axes(i, frame.z),
@@ -166,6 +165,17 @@ def pack(name, spec, at):
     )
     states = () if state < 0 else (state, state + 1)
     return Row(*own, contact, states=states, travel="surface")
+
+
+def check_levers(spec, code, friction):
+    """Refuse resistance to rolling and spinning where it has no meaning."""
+    if code != CORNERED or friction[0] == 0.0:
+        what = "resistance to rolling and spinning comes in with speed as sliding friction does"
+        hint = "take `modified_coulomb`, with `v0`, `v1` and a `coefficient` above 0"
+        raise ScenarioError(what, hint, ("contact",))
+    if spec.ball.radius == 0.0:
+        what = "a point neither rolls nor spins"
+        raise ScenarioError(what, "give the ball a radius, or no levers", ("ball", "radius"))
 
 
 def bristles(spec, law, numbers, at):
@@ -261,6 +271,18 @@ def resistance(scene, e, F_n, n):
     return m, dot(m, w)
 
 
+@internal
+def is_behind(scene, e):
+    """Whether the ball is on the side of an open profile on which it was not drawn: its right."""
+    own = Own(scene, e)
+    if own.shape != PROFILE or own.closed == 1:
+        return False
+    _, _, d, _ = carried(scene, e)
+    x, y = dot(arm(scene.X, own.i, own.u_i), d), dot(arm(scene.X, own.i, own.w_i), d)
+    side, _ = beside(scene.tab, own.profile, 1, x, y)
+    return side < 0.0
+
+
 @kernel
 def force(t, scene, e):
     zd, left, own = scene.zd, scene.left, Own(scene, e)
@@ -328,11 +350,12 @@ def measure(t, scene, e, o):
     out[o], out[o + 1] = F_n, sqrt(dot(F_t, F_t))
     out[o + 2], out[o + 3] = sqrt(dot(f, f)), depth
     out[o + 4], out[o + 5] = rate, speed if own.phase == CONTACT else 0.0
-    out[o + 6] = dot(arm(scene.X, own.i, own.u_i), d)
-    out[o + 7] = dot(arm(scene.X, own.i, own.w_i), d)
-    out[o + 8] = dot(arm(scene.X, own.i, own.a_i), d)
+    out[o + 6] = F_n if F_n > 0.0 and is_behind(scene, e) else 0.0
+    out[o + 7] = dot(arm(scene.X, own.i, own.u_i), d)
+    out[o + 8] = dot(arm(scene.X, own.i, own.w_i), d)
+    out[o + 9] = dot(arm(scene.X, own.i, own.a_i), d)
     for c in range(3):
-        out[o + 9 + c] = f[c]
+        out[o + 10 + c] = f[c]
 
 
 # --- what others ask -----------------------------------------------------------------------
@@ -354,14 +377,22 @@ def turning(row):
 
 def doubts(name, spec, largest):
     """A ball that was pressed in so deep that it might come out on the other side."""
-    if spec.ball.radius == 0.0:
-        return
     depth, when = largest(f"{name}.penetration", signed=True)
-    if depth > DEEP * spec.ball.radius:
+    surface, r = spec.surface, spec.ball.radius
+    behind, _ = largest(f"{name}.force_behind")
+    if behind > 0.0 and not fits_behind(surface, r):
         yield (
-            f"forces.{name}: the surface was pressed {depth:.3g} m deep into a ball of radius "
-            f"{spec.ball.radius:.3g} m at {when:.4g} s: the contact is too soft, or the impact too "
-            "fast, for its law to mean anything; take a larger `stiffness`"
+            f"forces.{name}: the ball met the profile from the side on which it is not drawn, with "
+            f"up to {behind:.3g} N, and is too large to touch it there in one place only; give a "
+            "contact for each side of its corners, or a closed profile with `corner_radius`"
+        )
+    limit = DEEP * r if r > 0.0 else thickness(surface)
+    if depth > min(limit, thickness(surface)):
+        into = f"a ball of radius {r:.3g} m" if limit == DEEP * r > 0.0 else "a surface so thin"
+        yield (
+            f"forces.{name}: a penetration of {depth:.3g} m at {when:.4g} s is too deep for "
+            f"{into}: the contact is too soft, or the impact too fast, for its law to mean "
+            "anything; take a larger `stiffness`"
         )
 
 
@@ -372,7 +403,7 @@ ELEMENT = Element(
     pack=pack,
     acts_at=at_both,
     reach=reach,
-    judged=lambda row: Own.of(row).ball > 0.0,
+    judged=lambda _: True,
     doubts=doubts,
     channels=(
         Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
@@ -381,6 +412,9 @@ ELEMENT = Element(
         Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
         Channel("penetration_rate", "m/s", "positive while approaching"),
         Channel("sliding_speed", "m/s", "of the ball on the surface; 0 in flight", least=0.0),
+        Channel(
+            "force_behind", "N", "normal force of an open profile on its other side", least=0.0
+        ),
         Channel("place", "m", "nearest place on the surface, in its axes", 3),
         Channel("force", "N", "contact force on the body of the ball, world axes", 3),
     ),

@@ -22,6 +22,7 @@ SAMPLES, LEAST = 1000, 8  # places along a profile, for its reach, and along eac
 NEXT = 1e-6  # of its size: where one piece ends and the next begins
 FEW = 16  # pieces: they are looked at one by one
 MOST = 20_000  # pieces of a spline
+STILL = 1e-9  # of the rate along a spline by its chords: it stands still there
 FLAT = 1e-7  # rad: an arc that turns by less is straight
 LEVEL = 1e-6  # of a distance: what rises so little above the tangent is on it
 
@@ -133,7 +134,7 @@ def put_together(p: Any, order: Any, radius: float, closed: bool, side: int) -> 
             hint = "give `corner_radius`, more than the ball's, or a contact for each side"
             raise Flaw(what, hint, int(order[k]))
         if radius == 0.0:
-            edges.append(p[k])
+            edges.append((p[k], way[k - 1], way[k]))
             continue
         cuts[k] = radius * tan(0.5 * angle)
         inwards = (way[k] - way[k - 1]) / np.linalg.norm(way[k] - way[k - 1])
@@ -150,16 +151,17 @@ def put_together(p: Any, order: Any, radius: float, closed: bool, side: int) -> 
         if left > SAME * size:
             pieces.append((STRAIGHT, *(p[k] + cuts[k] * way[k]), *way[k], left, 0.0))
     if not closed:
-        edges += [p[0], p[-1]]
+        edges += [(p[0], None, way[0]), (p[-1], way[-1], None)]
         sharp = 0.0
     return finished(pieces, edges, sharp, side)
 
 
 def finished(pieces: list[tuple[float, ...]], edges: list[Any], sharp: float, side: int) -> Profile:
-    """The profile of pieces one behind the other, and of places where they meet at an angle."""
+    """The profile of pieces one behind the other, and of places where they meet at an angle: each
+    with the directions in which the line comes there and goes on, None beyond an end."""
     places, normals = sampled(pieces)
-    reach = fits(places, side * normals)
-    pieces = [*pieces, *((EDGE, *place, 0.0, 0.0, 0.0, 0.0) for place in edges)]
+    reach = min(fits(places, side * normals), fits_on_edges(edges, places))
+    pieces = [*pieces, *((EDGE, *place, 0.0, 0.0, 0.0, 0.0) for place, _, _ in edges)]
     return Profile(grouped(pieces), sharp, reach, places)
 
 
@@ -193,6 +195,26 @@ def ends_of(piece: tuple[float, ...]) -> list[Any]:
     ray, across = np.array([b, c]), np.array([-c, b])
     aside = np.sqrt(max(1.0 - d * d, 0.0)) if d > 0.0 else 1.0
     return [at + a * (u * ray + v * aside * across) for u in (d, 1.0) for v in (-1.0, 1.0)]
+
+
+def fits_on_edges(edges: list[Any], places: Any) -> float:
+    """The same of balls that touch an edge, whose normals are a fan: half the way to what lies in
+    it."""
+    import numpy as np
+
+    least, size = inf, float(np.linalg.norm(np.ptp(places, axis=0)))
+    all_places = np.vstack([places, *(place for place, _, _ in edges)])
+    for place, before, after in edges:
+        d = all_places - place
+        far = np.linalg.norm(d, axis=1)
+        seen = far > NEXT * size
+        if after is not None:
+            seen &= d @ after <= LEVEL * far
+        if before is not None:
+            seen &= d @ before >= -LEVEL * far
+        if seen.any():
+            least = min(least, 0.5 * float(far[seen].min()))
+    return least
 
 
 def smooth(points: Any, closed: bool, side: int, tolerance: float) -> Profile:
@@ -234,7 +256,8 @@ def smooth(points: Any, closed: bool, side: int, tolerance: float) -> Profile:
     if closed and meets_itself(np.array([piece[1:3] for piece in pieces_as_lines(pieces)])):
         raise Flaw("the profile crosses itself", "give its points in their order round it")
     rounds = [one[3] for one in pieces if one[0] == (ROUND if side > 0 else HOLLOW)]
-    edges = [] if closed else [p[0], p[-1]]
+    ends = [spline(u, 1) / np.linalg.norm(spline(u, 1)) for u in (nodes[0], nodes[-1])]
+    edges = [] if closed else [(p[0], None, ends[0]), (p[-1], ends[1], None)]
     return finished(pieces, edges, min(rounds, default=inf) if closed else 0.0, side)
 
 
@@ -264,11 +287,19 @@ def two_arcs(p: Any, d: Any, q: Any, e: Any) -> list[tuple[float, ...]]:
     """
     import numpy as np
 
-    d, e, v = d / np.linalg.norm(d), e / np.linalg.norm(e), q - p
+    speeds = float(np.linalg.norm(d)), float(np.linalg.norm(e))
+    if not min(speeds) > STILL:
+        raise Flaw("the profile turns back on itself", "its points are in one line, there and back")
+    d, e, v = d / speeds[0], e / speeds[1], q - p
     a, b, c = 2.0 * (1.0 - float(d @ e)), float(v @ (d + e)), float(v @ v)
-    k = c / (b + np.sqrt(b * b + a * c))  # the positive root of a k^2 + 2 b k - c = 0
+    below = b + np.sqrt(b * b + a * c)
+    if not below > STILL * np.sqrt(c):
+        raise Flaw("the profile turns back on itself", "its points are in one line, there and back")
+    k = c / below  # the positive root of a k^2 + 2 b k - c = 0
     middle = 0.5 * (p + k * d + q - k * e)
     ray = middle - p
+    if not float(ray @ ray) > 0.0:
+        raise Flaw("the profile turns back on itself", "its points are in one line, there and back")
     tangent = 2.0 * ray * float(ray @ d) / float(ray @ ray) - d
     return [arc(p, d, middle), arc(middle, tangent / np.linalg.norm(tangent), q)]
 
@@ -279,6 +310,8 @@ def arc(p: Any, d: Any, q: Any) -> tuple[float, ...]:
 
     v, left = q - p, np.array([-d[1], d[0]])
     square = float(v @ v)
+    if not square > 0.0:
+        raise Flaw("the profile turns back on itself", "its points are in one line, there and back")
     bend = 2.0 * float(left @ v) / square  # 1/R, positive where it turns left
     if abs(bend) * np.sqrt(square) < FLAT:
         along = v / np.sqrt(square)
