@@ -158,6 +158,26 @@ output: {{every: 0.1}}
     assert found == pytest.approx(want[want < 0.5], abs=1e-4 / spin)
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_no_touch_of_the_end_that_moves_is_passed_over(turned):
+    """A bar that turns about one end of its seal: only the other one touches, once a turn."""
+    spin, far = 150.0, 0.0999
+    ends = "start: [0.1, 0], end: [0, 0]" if turned else "start: [0, 0], end: [0.1, 0]"
+    text = f"""
+bodies: {{bar: {{mass: 2, inertia: 0.05, angular_velocity: [0, 0, {spin}]}}}}
+joints: {{hinge: {{type: revolute, bodies: [ground, bar], at: [0, 0]}}}}
+forces:
+  rim: {{type: seal, line: {{body: bar, {ends}}},
+        against: {{body: ground, at: [0, {-far}], normal: [0, 1]}}, load: 1e-4, at: 1e-3}}
+solver: {{end: 0.5}}
+output: {{every: 0.1}}
+"""
+    got = run(text)
+    want = (np.pi + np.arcsin(far / 0.1) + 2 * np.pi * np.arange(100)) / spin
+    found = got.events[got.events[:, EVENT_KIND] == ONSET][:, EVENT_TIME]
+    assert found == pytest.approx(want[want < 0.5], abs=1e-4 / spin)
+
+
 @pytest.mark.parametrize("wrong, what", [
     ("line: {body: left, start: [0, 0, 0], end: [1, 0, 0]}", "both on 'left'"),
     ("line: {body: right, start: [0, 0, 0], end: [0, 0, 0]}", "no length"),
