@@ -29,9 +29,10 @@ def compiling(answer: Answer, method: str = "") -> None:
     if method and METHODS[method].rests:
         from trsim.solve.path.balance import system as needed
     elif method:
-        # the largest first; the first process comes to the rest before it needs an implicit method
+        # what every run needs, the dearest first; the first process is at the rest meanwhile
         files = METHODS[method].files.get(INDEX_1, ("scipy_ivp",))
-        later = ["march.complete", *(f"methods.{name}" for name in reversed(files)), "march.loop"]
+        march = ("land", "peaks", "complete", "dense_output", "loop")
+        later = [*(f"methods.{name}" for name in reversed(files)), *(f"march.{n}" for n in march)]
         from trsim.solve.march.complete import complete as needed
     warn_of_shared_code(answer)
     if needed.known:
