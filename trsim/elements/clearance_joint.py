@@ -128,12 +128,10 @@ def pack(name, spec, at):
         clearance=spec.clearance, stiffness=K, exponent=exponent, form=form, chi=chi, state=state,
         friction_law=code, friction=friction,
     )  # fmt: skip
-    ramp = law.friction.law == "modified_coulomb"
-    slope = friction[0] / (friction[2] - friction[1]) if ramp else 0.0
-    jump = Own.columns["friction"].at if law.friction.law == "coulomb" else -1
+    jump = Own.columns["friction"].at if law.friction.jumps else -1
     contact = Contact(
-        light, exponent, spec.clearance, law.slowest_impact, chi, state, slope, jump,
-        law.bearing_radius,
+        light, exponent, spec.clearance, law.slowest_impact, chi, state,
+        law.friction.slope, jump, law.bearing_radius,
     )  # fmt: skip
     return Row(*own, contact, states=(state,), travel="distance")
 

@@ -62,6 +62,19 @@ class Friction(Spec):
         return self
 
     @property
+    def slope(self) -> float:
+        """s/m, of the coefficient over the speed, next to rest."""
+        if self.law != "modified_coulomb":
+            return 0.0
+        mu, v0, v1, *_ = self.numbers[1]
+        return mu / (v1 - v0)
+
+    @property
+    def jumps(self) -> bool:
+        """Whether it jumps at rest."""
+        return self.law == "coulomb"
+
+    @property
     def numbers(self) -> tuple[int, tuple[float, ...]]:
         """Code of the law and its N_PARAMETERS numbers."""
         given = {**dict(self), STATIC: self.static_coefficient or self.coefficient}

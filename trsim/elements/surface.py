@@ -3,6 +3,7 @@
 A plane, a sphere, a cylinder or a profile; how far from it a place is tells laws/surfaces.py.
 """
 
+from functools import lru_cache
 from math import inf
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -129,9 +130,16 @@ def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
 
 def pieces_of(surface, side):
     """The profile of a surface, whose free side is as laws/profiles.py has it.  Raises Flaw."""
-    if surface.smooth:
-        return smooth(surface.points, surface.closed, side, SPLINE)
-    return profile(surface.points, surface.corner_radius, surface.closed, side)
+    closed, radius = surface.closed, surface.corner_radius
+    return made(surface.points, None if surface.smooth else radius, closed, side)
+
+
+@lru_cache(maxsize=256)  # a run assembles several times, and looks for how large a ball fits
+def made(points, radius, closed, side):
+    """The profile through points, straight with a radius at its corners, or else smooth."""
+    if radius is None:
+        return smooth(points, closed, side, SPLINE)
+    return profile(points, radius, closed, side)
 
 
 def turned_round(surface):

@@ -49,7 +49,9 @@ from trsim.elements.frames import (
     plus,
     points,
     push_apart,
+    relative_spin,
     scaled,
+    twist_apart,
     velocity,
 )
 from trsim.elements.surface import Surface, fits_behind, shape_of, thickness
@@ -70,7 +72,7 @@ from trsim.laws.friction import (
 )
 from trsim.laws.surfaces import PLANE, PROFILE, SPHERE, away, beside
 
-CORNERED, STICKING = CODES["modified_coulomb"], CODES["sticking"]
+CORNERED = CODES["modified_coulomb"]
 DEEP = 0.2  # of the radius of a ball: deeper than that it is no longer one that touches a surface
 
 
@@ -157,11 +159,16 @@ def pack(name, spec, at):
         slowest_impact=law.slowest_impact, rolling=spec.rolling_resistance,
         spinning=spec.spinning_friction,
     )  # fmt: skip
-    ramp = law.friction.law == "modified_coulomb"
-    slope = friction[0] / (friction[2] - friction[1]) if ramp else 0.0
-    jump = Own.columns["friction"].at if law.friction.law == "coulomb" else -1
+    jump = Own.columns["friction"].at if law.friction.jumps else -1
     contact = Contact(
-        normal.stiffness, normal.exponent, inf, law.slowest_impact, normal.chi, state, slope, jump
+        normal.stiffness,
+        normal.exponent,
+        inf,
+        law.slowest_impact,
+        normal.chi,
+        state,
+        law.friction.slope,
+        jump,
     )
     states = () if state < 0 else (state, state + 1)
     return Row(*own, contact, states=states, travel="surface")
@@ -258,9 +265,8 @@ def friction_of(scene, e, F_n, n, v_t, speed):
 @internal
 def resistance(scene, e, F_n, n):
     """Moment on body j against rolling and spinning, world axes, and its power."""
-    V, own = scene.V, Own(scene, e)
-    i, j, f = own.i, own.j, own.friction
-    w = (V[j, 3] - V[i, 3], V[j, 4] - V[i, 4], V[j, 5] - V[i, 5])
+    own = Own(scene, e)
+    f, w = own.friction, relative_spin(scene.V, own.i, own.j)
     spin = dot(n, w)
     roll = minus(w, scaled(spin, n))
     size, code = sqrt(dot(roll, roll)), own.friction_law
@@ -303,9 +309,7 @@ def force(t, scene, e):
         zd[own.state], zd[own.state + 1] = rate_t, rate_z
     if own.rolling > 0.0 or own.spinning > 0.0:
         m, power = resistance(scene, e, F_n, n)
-        for c in range(3):
-            scene.F[own.j, 3 + c] += m[c]
-            scene.F[own.i, 3 + c] -= m[c]
+        twist_apart(scene.F, own.i, own.j, m)
         zd[FRICTION] += power
 
 
@@ -386,9 +390,9 @@ def doubts(name, spec, largest):
             f"up to {behind:.3g} N, and is too large to touch it there in one place only; give a "
             "contact for each side of its corners, or a closed profile with `corner_radius`"
         )
-    limit = DEEP * r if r > 0.0 else thickness(surface)
+    limit = DEEP * r if r > 0.0 else inf
     if depth > min(limit, thickness(surface)):
-        into = f"a ball of radius {r:.3g} m" if limit == DEEP * r > 0.0 else "a surface so thin"
+        into = f"a ball of radius {r:.3g} m" if r > 0.0 else "a surface so thin"
         yield (
             f"forces.{name}: a penetration of {depth:.3g} m at {when:.4g} s is too deep for "
             f"{into}: the contact is too soft, or the impact too fast, for its law to mean "
