@@ -22,6 +22,7 @@ KEYS = {
     "second_axis": "[0.6, -0.48, 0]",
     "x_axis": "[0.8, -0.1, 0.3]",
     "pitch": "0.4",
+    "floating": str((AT + 0.4 * AXIS).tolist()),
     "clearance": "0",
     "contact": "law",
 }
@@ -46,7 +47,8 @@ def scene(case, more, end=0.5, rate=RATE):
     """A body on a joint of which one coordinate moves at a rate."""
     word, coordinate, swapped = case
     fields = JOINTS[word].spec.model_fields
-    own = ", ".join(f"{key}: {value}" for key, value in KEYS.items() if key in fields)
+    keys = KEYS | {"axis": AXIS.tolist()}
+    own = ", ".join(f"{key}: {value}" for key, value in keys.items() if key in fields)
     kind = JOINTS[word].ideal or word
     pair = "body, ground" if swapped else "ground, body"
     of = f"joint.{coordinate}"
@@ -56,8 +58,7 @@ bodies:
   body: {{mass: 2, inertia: [0.05, 0.06, 0.07, 0.01, 0.002, -0.003], at: [0.3, 0.2, -0.1],
          angle: 0.7}}
 joints:
-  joint: {{type: {kind}, bodies: [{pair}], at: {AT}, axis: {AXIS.tolist()},
-          {own}}}
+  joint: {{type: {kind}, bodies: [{pair}], at: {AT}, {own}}}
 initial: {{{of}.rate: {rate}}}
 sensors: {{x: {{joint: {of}}}}}
 gravity: [1, -3, 2]

@@ -13,6 +13,7 @@ from .test_constraints import JOINTS, written
 FREE = {
     "fixed": 0,
     "revolute": 1,
+    "shaft": 1,
     "prismatic": 1,
     "screw": 1,
     "cylindrical": 2,

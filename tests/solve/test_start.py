@@ -402,3 +402,39 @@ def test_starts_many_turns_away_are_alike(R, planar, more):
     plane = run(two_rods(ORDINARY, "true", more=more))
     assert r["a"][0] == pytest.approx(30.0, abs=1e-9)
     assert r["b"][0] == pytest.approx(plane["b"][0], abs=1e-8)
+
+
+CRANK = """
+planar: true
+bodies:
+  crank: {mass: 1, inertia: 0.01, at: [0.04, 0.03]}
+  rod: {mass: 1, inertia: 0.02, at: [0.16, 0.03]}
+  slider: {mass: 2, inertia: 0.01, at: [END, 0]}
+joints:
+  bearing: {type: revolute, bodies: [ground, crank], at: [0, 0]}
+  pin: {type: revolute, bodies: [crank, rod], at: [0.08, 0.06]}
+  wrist: {type: revolute, bodies: [rod, slider], at: [END, 0]}
+  guide: {type: prismatic, bodies: [ground, slider], axis: [1, 0], at: [END, 0]}
+  spare: {type: revolute, bodies: [ground, wheel], at: [1, 0]}
+drives: {other: {joint: spare, velocity: 1}, motor: {joint: bearing, MOTION}}
+sensors: {turn: {joint: bearing}, stroke: {joint: guide}, second: {joint: spare}}
+initial: {guide: -40 mm}
+solver: {end: 0.1, tolerance: 1e-9}
+""".replace("joints:", "  wheel: {mass: 1, inertia: 0.01, at: [1, 0]}\njoints:").replace(
+    "END", str(0.08 + 0.0364**0.5)
+)
+
+
+def test_a_drive_with_a_velocity_begins_where_another_joint_puts_its_own():
+    """The slider 40 mm inward, by the law of cosines: l^2 = a^2 + x^2 - 2 a x cos f."""
+    r = run(CRANK.replace("MOTION", "velocity: 5"))
+    a, l, x = 0.1, 0.2, 0.08 + 0.0364**0.5 - 0.04
+    begin = np.arccos((x * x + a * a - l * l) / (2 * a * x))
+    assert r["turn"][0] + np.arctan2(0.06, 0.08) == pytest.approx(begin, abs=1e-9)
+    assert r["stroke"][0] == pytest.approx(-0.04, abs=1e-10)
+    assert r["turn"] == pytest.approx(r["turn"][0] + 5 * r.t, abs=1e-9)
+    assert r["motor.position"] == pytest.approx(r["turn"], abs=1e-9)
+    assert r["second"] == pytest.approx(r.t, abs=1e-9)  # the other drive begins as drawn
+    with pytest.raises(ModelError, match="fixes this joint already") as caught:
+        run(CRANK.replace("MOTION", "position: 5*t"))
+    assert caught.value.path == ("initial", "guide")

@@ -13,6 +13,7 @@ ELEMENTS = {
     "rigid_body": "bodies",
     "ancf_cable": "bodies",  # also a rigid_body with the key `flexible`
     "revolute": "joints",
+    "shaft": "joints",
     "spherical": "joints",
     "universal": "joints",
     "prismatic": "joints",

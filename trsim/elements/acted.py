@@ -4,6 +4,8 @@ Of constraint rows it is -J^T lambda of the rows alone; of what else pushes, its
 alone.
 """
 
+from typing import NamedTuple
+
 from trsim.elements.contract import FIRST_ROW, Pair, call_kernel
 from trsim.elements.frames import plus
 from trsim.kernels.columns import i8, run
@@ -12,22 +14,43 @@ from trsim.kernels.lazy import internal
 PUSHES = {"force", "rub"}  # kernels that push; what rubs does so by forces found before
 
 
+class Part(NamedTuple):
+    """Constraint rows of an instance that hold its bodies at a place of their own."""
+
+    first: int  # of its rows
+    rows: int
+    places: tuple  # (frame, point in its axes from its centre) on either body
+
+
+def parts_of(instance):
+    """Its rows by their places; of most elements all together."""
+    element, row = instance.element, instance.row
+    if element.parts:
+        return element.parts(row)
+    places = element.acts_at(row) if element.acts_at else ()
+    return (Part(0, len(element.rows), places),)
+
+
 class Acted(Pair):
     """Of what tells a wrench on body i."""
 
     number: i8  # of what acts
     pushes: i8  # 1: some of that are no constraint rows
-    members: run(i8)  # of each its instance and how many constraint rows it has
+    members: run(i8)  # of each its instance, the first of its constraint rows and how many
 
 
 def acting(members):
-    """These columns, of instances with their numbers."""
-    pairs = [(e, len(instance.element.rows)) for e, instance in members]
+    """These columns, of (number, instance, part of it)."""
     return {
-        "number": len(pairs),
-        "pushes": any(PUSHES & {*instance.element.kernels} for _, instance in members),
-        "members": [n for pair in pairs for n in pair],
+        "number": len(members),
+        "pushes": any(PUSHES & {*instance.element.kernels} for _, instance, _ in members),
+        "members": [n for e, _, part in members for n in (e, part.first, part.rows)],
     }
+
+
+def whole(e, instance):
+    """All of an instance, part by part."""
+    return [(e, instance, part) for part in parts_of(instance)]
 
 
 @internal
@@ -36,7 +59,8 @@ def wrench(t, scene, e):
     own = Acted(scene, e)
     f, m = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for k in range(own.number):
-        f_k, m_k = of_rows(scene, own.i, own.members[2 * k], own.members[2 * k + 1])
+        e_k, first, rows = own.members[3 * k], own.members[3 * k + 1], own.members[3 * k + 2]
+        f_k, m_k = of_rows(scene, own.i, e_k, first, rows)
         f, m = plus(f, f_k), plus(m, m_k)
     if own.pushes == 1:
         f_k, m_k = pushed(t, scene, e)
@@ -45,10 +69,10 @@ def wrench(t, scene, e):
 
 
 @internal
-def of_rows(scene, i, e, rows):
-    """What the constraint rows of instance e put on a body."""
+def of_rows(scene, i, e, first, rows):
+    """What some of the constraint rows of instance e put on a body."""
     J, f, m = scene.J, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    for r in range(FIRST_ROW, FIRST_ROW + rows):
+    for r in range(FIRST_ROW + first, FIRST_ROW + first + rows):
         row = scene.con[e, r]
         if row >= 0:
             pull = -scene.lam[row]
@@ -81,7 +105,7 @@ def pushed(t, scene, e):
     for k in range(scene.n_z):
         rates[k] = zd[k]
     for k in range(own.number):
-        one = own.members[2 * k]
+        one = own.members[3 * k]
         call_one(t, scene, scene.force, one)
         call_one(t, scene, scene.rub, one)
     found = (F[i, 0], F[i, 1], F[i, 2]), (F[i, 3], F[i, 4], F[i, 5])

@@ -310,6 +310,8 @@ class Element:
     # body, turns it included; the point is None where nobody can tell it.  None: its rows alone say
     # which bodies it holds
     acts_at: Callable[[Row], tuple] | None = None
+    # (row) -> acted.Part of rows that hold bodies at places of their own.  None: all at one
+    parts: Callable[[Row], tuple] | None = None
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged

@@ -9,6 +9,7 @@ reaction of the joint's own rows, a force R and a moment M on body j at the join
 
     slide     N = |R_1| + |R_2| + 2 |M . a| / width               g = 1
     hinge     N = |R_1| + |R_2| + |R . a| thrust_radius / radius  g = radius
+    shaft     the same of its locating and its floating bearing   g = radius
     ball      N = |R|                                             g = radius  about every axis
     thread    N = |R . a| / cos l,   tan l = h / radius           g = radius / cos l  of the angle
 
@@ -49,7 +50,7 @@ from trsim.elements.frames import (
     scaled,
 )
 from trsim.elements.friction_law import Friction
-from trsim.elements.sliding import MOST, check, check_sizes, coordinates, counts, gear, lead
+from trsim.elements.sliding import MOST, check, check_sizes, coordinates, counts, gear
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import f8, i8, run
 from trsim.kernels.lazy import internal
@@ -101,6 +102,7 @@ class Own(Along):
     axial_counts: f8
     twist_counts: f8  # of the moment about the axis, 1/m
     tilt_counts: f8  # of moments across it at each end, 1/m
+    share: f8  # that its first end has of forces across the axis, without a moment
     reacts: f8  # 1 where a load makes friction, 0 where the constant is all there is
     preload: f8  # N
     friction: run(f8, N_PARAMETERS)
@@ -125,7 +127,7 @@ def pack(name, spec, at):
     at.check_units(kind, JointFriction, ("constant",), "forces", name)
     gears, along, about = zip(*(gear(spec, x, at) for x in parts), strict=True)
     mu, (law, numbers) = spec.friction.coefficient, spec.friction.numbers
-    counted = counts(spec, surface, lead(at.scenario.joints[axis.joint]))
+    counted = counts(spec, surface, at.scenario.joints[axis.joint])
     counted["reacts"] = float(mu > 0.0)
     if mu == 0.0:  # the constant alone, as of a coefficient of 1
         mu, numbers = 1.0, (1.0, *numbers[1:])
@@ -156,9 +158,10 @@ def filled(values, rest=0.0, number=MOST):
 @internal
 def ends(own, a, R, M):
     """What each end carries across the axis."""
-    half = scaled(0.5, minus(R, scaled(dot(R, a), a)))
+    across = minus(R, scaled(dot(R, a), a))
     tilt = scaled(own.tilt_counts, cross(M, a))
-    return plus(half, tilt), minus(half, tilt)
+    first = plus(scaled(own.share, across), tilt)
+    return first, minus(across, first)
 
 
 @internal
@@ -258,8 +261,9 @@ def load(t, scene, e):
     N = pressing(scene, e)
     f, _, slip = sliding(scene, e)
     bend(scene, e)
-    # ends: n . dR/2 across the axis, and n . (dM x a) c = (a x n) . dM c
-    by_R = plus(scaled(0.5, plus(n_1, n_2)), scaled(signed(own.axial_counts, axial), a))
+    # ends: n . dR of each share across the axis, and n . (dM x a) c = (a x n) . dM c
+    n = plus(scaled(own.share, n_1), scaled(1.0 - own.share, n_2))
+    by_R = plus(n, scaled(signed(own.axial_counts, axial), a))
     by_M = plus(
         scaled(own.tilt_counts, cross(a, minus(n_1, n_2))),
         scaled(signed(own.twist_counts, twist), a),

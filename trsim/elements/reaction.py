@@ -9,7 +9,7 @@ axis a is fixed in the body `frame`.  Of a joint with clearance they are those o
 from math import sqrt
 from typing import ClassVar, Literal
 
-from trsim.elements.acted import Acted, acting, wrench
+from trsim.elements.acted import Acted, acting, parts_of, whole, wrench
 from trsim.elements.contract import Channel, Element, Row, Turning, measured
 from trsim.elements.frames import arm, cross, dot, minus
 from trsim.elements.joint import of_key
@@ -60,11 +60,11 @@ def pack(name, spec, at):
     body = joint.bodies[1] if spec.on is None else spec.on
     if body not in joint.bodies:
         raise ScenarioError(f"'{body}' is none of its bodies", known(body, joint.bodies), ("on",))
-    first, second = instance.element.acts_at(instance.row)
+    first, second = parts_of(instance)[0].places
     i, drawn = first if body == joint.bodies[0] else second
     frame = at.frame(spec.frame, spec.at)
     own = Own.packed(
-        i=i, j=frame, coordinate=at.sensor(name), **acting([(e, instance)]),
+        i=i, j=frame, coordinate=at.sensor(name), **acting(whole(e, instance)),
         turns=spec.of == "moment",
         place=drawn if spec.at is None else at.looked_at(i, spec.at),
         axis=(0.0, 0.0, 0.0) if spec.axis is None else at.axes(frame, of_key(spec, "axis")),

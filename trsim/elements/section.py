@@ -19,7 +19,7 @@ from typing import Annotated, ClassVar, NamedTuple
 from annotated_types import Ge
 from pydantic import model_validator
 
-from trsim.elements.acted import Acted, acting, wrench
+from trsim.elements.acted import Acted, acting, whole, wrench
 from trsim.elements.contract import (
     Channel,
     Element,
@@ -158,7 +158,7 @@ def of_shape(spec, at, a):
 
 def said(spec, part, acts):
     """What lies beyond and what acts there, in words."""
-    names = dict.fromkeys(instance.name for _, instance in acts)
+    names = dict.fromkeys(instance.name for _, instance, _ in acts)
     least = ROUNDED * max(map(abs, part.centre))
     centre = ", ".join(f"{c:.6g}" if abs(c) > least else "0" for c in part.centre)
     what = f"{part.mass:.6g} kg of {spec.body} beyond it"
@@ -204,37 +204,42 @@ def check_part(spec, at, i, part):
 
 
 def beyond(spec, at, i, a):
-    """What acts on the part beyond, each with its number."""
-    acting = at.acting_on(i)
-    sides = {x.name: side_of(spec, at, i, a, x) for _, x in acting}
-    split = [name for name, side in sides.items() if side == {1, -1}]
+    """What acts on the part beyond, part by part, each with its number."""
+    acting = [one for e, x in at.acting_on(i) for one in whole(e, x)]
+    sides = [side_of(spec, at, i, a, part) for _, _, part in acting]
+    split = [x.name for (_, x, _), side in zip(acting, sides, strict=True) if side == {1, -1}]
     if split:
         what = f"'{split[0]}' acts on the body on both sides of the section"
         raise ScenarioError(what, "cut the body elsewhere, or into two bodies", ("at",))
     if spec.beyond is None:
-        unknown = [name for name, side in sides.items() if side not in ({1}, {-1})]
-        if unknown:
-            raise ScenarioError(
-                f"on which side of the section '{unknown[0]}' acts cannot be told from the drawing",
-                "list under `beyond` all that acts on the part beyond, `[]` if nothing does",
-            )
-        return [(e, x) for e, x in acting if sides[x.name] == {1}]
-    names = [x.name for _, x in acting if x.section != "events"]
+        for (_, x, _), side in zip(acting, sides, strict=True):
+            if side not in ({1}, {-1}):
+                what = f"on which side of the section '{x.name}' acts cannot be told from the "
+                hint = "list under `beyond` all that acts on the part beyond, `[]` if nothing does"
+                raise ScenarioError(f"{what}drawing", hint)
+        return [one for one, side in zip(acting, sides, strict=True) if side == {1}]
+    names = [x.name for _, x, _ in acting if x.section != "events"]
     for k, name in enumerate(spec.beyond):
         if name not in names:
             what = f"no joint, drive or force named '{name}' acts on '{spec.body}'"
             raise ScenarioError(what, known(name, names), ("beyond", k))
-    return [(e, x) for e, x in acting if {x.name, at.joint_of(x)} & {*spec.beyond}]
+    # of a shaft whose bearings lie on both sides each is where it is
+    both = {x.name for (_, x, _), side in zip(acting, sides, strict=True) if side == {1}}
+    both &= {x.name for (_, x, _), side in zip(acting, sides, strict=True) if side == {-1}}
+    return [
+        one for one, side in zip(acting, sides, strict=True)
+        if {one[1].name, at.joint_of(one[1])} & {*spec.beyond}
+        and not (one[1].name in both and side == {-1})
+    ]  # fmt: skip
 
 
-def side_of(spec, at, i, a, instance):
+def side_of(spec, at, i, a, part):
     """On which sides of the section something acts on the body: 1 beyond, -1, 0: in its plane, or
     nobody can tell."""
-    element = instance.element
     near, found = IN_PLANE * at.size_of(i), set()
     station = at.looked_at(i, spec.at)
     a = at.axes(i, a)
-    for frame, place in element.acts_at(instance.row) if element.acts_at else ():
+    for frame, place in part.places:
         if frame == i and place is None:
             found.add(0)
         elif frame == i:

@@ -1,10 +1,10 @@
 """What of a joint rubs: along which coordinates it slides, what presses it, and its sizes.
 
-A hinge, a slide, a sleeve, a plane, a thread or a ball, as the coordinates of the joint have it.
-How they rub is in joint_friction.py.
+A hinge, a shaft on two bearings, a slide, a sleeve, a plane, a thread or a ball, as the joint and
+its coordinates have it.  How they rub is in joint_friction.py.
 """
 
-from math import atan, cos, pi, sin
+from math import atan, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from trsim.elements.coordinates import named, of_joint
@@ -19,6 +19,7 @@ UNITS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 KEYS = {
     "a thread": ("radius",),
     "a hinge": ("radius", "thrust_radius", "length"),
+    "a shaft": ("radius", "thrust_radius"),
     "a slide": ("length", "width"),
     "a sleeve": ("radius", "length"),
     "a plane": ("radius",),
@@ -93,19 +94,24 @@ def gear(spec, x, at):
     return (spec.radius, 0.0, spec.radius) if x.kind == "angle" else (1.0, 1.0, 0.0)
 
 
-def counts(spec, surface, screw):
+def counts(spec, surface, joint):
     """How a reaction presses what rubs."""
     counted = dict.fromkeys(("across_counts", "axial_counts", "twist_counts", "tilt_counts"), 0.0)
+    counted["share"], screw = 0.5, lead(joint)
     if surface == "a thread":
         return counted | {"axial_counts": 1.0 / cos(atan(screw / spec.radius))}
     if surface == "a plane":
         return counted | {"axial_counts": 1.0}
-    if surface == "a hinge":
+    if surface in ("a hinge", "a shaft"):
         thrust = spec.thrust_radius / spec.radius if spec.thrust_radius else 0.0
         counted["axial_counts"] = thrust
     if surface == "a slide" and spec.width:
         counted["twist_counts"] = 2.0 / spec.width
-    tilt = 1.0 / spec.length if spec.length else 0.0
+    if surface == "a shaft":  # its reaction is that at the bearing where `at` is
+        counted["share"] = 0.0
+        tilt = 1.0 / sqrt(sum(c * c for c in joint.axis))
+    else:
+        tilt = 1.0 / spec.length if spec.length else 0.0
     return counted | {"across_counts": 1.0, "tilt_counts": tilt}
 
 
@@ -164,7 +170,9 @@ def check_sizes(spec, parts, joint, at):
     """What rubs, in words.  Refuses sizes that it does not have, and those that are missing."""
     x, angle = parts[0], any(part.kind == "angle" for part in parts)
     what = "a hinge" if x.kind == "angle" else "a slide"
-    if lead(at.scenario.joints[x.joint]) != 0.0:
+    if joint.element.parts:
+        what = "a shaft"
+    elif lead(at.scenario.joints[x.joint]) != 0.0:
         what = "a thread"
     elif len(parts) > 1 and x.entry < 0:
         what = "a ball"
@@ -186,7 +194,7 @@ def check_sizes(spec, parts, joint, at):
                 "give `length`: the distance of the two ends that carry them",
                 ("length",),
             )
-    elif places and what == "a hinge":
+    elif places and what in ("a hinge", "a shaft"):
         check_pressed(spec, joint, x, at)
     return what
 

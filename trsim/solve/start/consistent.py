@@ -206,18 +206,7 @@ def positions(
         return mechanism.y0, 0.0, {}, {}
     playing = {n for n, s in scenario.joints.items() if elements.load(s.type).ideal}
     ideal = frozenset(playing - set(initial.equilibrium))
-    drives = holding_drives(scenario, initial)
-    try:
-        held = with_scene(assemble(scenario, ideal, drives, stiff=True, planar=mechanism.planar))
-    except ModelError as error:
-        name = str(error.path[-1]).removeprefix("hold ") if error.path[:1] == ("drives",) else ""
-        if name not in initial.values:
-            raise
-        raise ModelError(
-            "a drive, or another value of `initial`, fixes this joint already",
-            "give one value for each degree of freedom",
-            ("initial", name),
-        ) from None
+    held = with_scene(held_still(scenario, initial, ideal, mechanism.planar))
     y = follow(held, carried(mechanism, held))
     residual = 0.0
     targets = {held.coordinates[name].entry: value for name, value in initial.values.items()}
@@ -231,7 +220,10 @@ def positions(
         y, residual = approach(held, y, targets, settle, rigid)
     remember(held.model, y)
     if mechanism.beams:
-        stiff, held = held, with_scene(assemble(scenario, ideal, drives, planar=mechanism.planar))
+        stiff, held = (
+            held,
+            with_scene(held_still(scenario, initial, ideal, mechanism.planar, False)),
+        )
         y, residual = bent(stiff, held, y, settle)
         remember(held.model, y)
     angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
@@ -257,8 +249,7 @@ def by_ideal_joints(
     A journal would leave its bearing with every step of the way, and be pressed back through it.
     """
     try:
-        drives = holding_drives(scenario, initial)
-        bare = with_scene(assemble(scenario, playing, drives, stiff=True, planar=held.planar))
+        bare = with_scene(held_still(scenario, initial, playing, held.planar))
         y, _ = equilibrium(bare, follow(bare, carried(bare, bare)), rigid)
         targets = {bare.coordinates[name].entry: value for name, value in initial.values.items()}
         y, _ = approach(bare, y, targets, True, rigid)
@@ -273,10 +264,55 @@ def by_ideal_joints(
     return follow(held, there)
 
 
-def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
-    """The scenario's drives at rest, those of the joints of `initial` replaced by rigid holds."""
+def held_still(
+    scenario: Any, initial: Any, ideal: frozenset[str], planar: bool, stiff: bool = True
+) -> Mechanism:
+    """The mechanism with its drives at rest, and rigid holds for the values of `initial`.
+
+    Where a value leaves a drive with a velocity no place to hold, that drive is left out: its
+    motion begins where the values put its joint.
+    """
+    free: set[str] = set()
+    while True:
+        conflict = fixed_twice(scenario, initial, ideal, planar, free)
+        if not conflict:
+            drives = holding_drives(scenario, initial, free)
+            return assemble(scenario, ideal, drives, stiff=stiff, planar=planar)
+        for name, drive in scenario.drives.items():
+            if name in free or getattr(drive, "velocity", None) is None:
+                continue
+            if fixed_twice(scenario, initial, ideal, planar, {*free, name}) != conflict:
+                free.add(name)
+                break
+        else:
+            raise ModelError(
+                "a drive, or another value of `initial`, fixes this joint already",
+                "give one value for each degree of freedom",
+                ("initial", conflict),
+            )
+
+
+def fixed_twice(
+    scenario: Any, initial: Any, ideal: frozenset[str], planar: bool, free: set[str]
+) -> str:
+    """The first value of `initial` that something else fixes already, where there is one."""
+    try:
+        assemble(
+            scenario, ideal, holding_drives(scenario, initial, free), stiff=True, planar=planar
+        )
+    except ModelError as error:
+        name = str(error.path[-1]).removeprefix("hold ") if error.path[:1] == ("drives",) else ""
+        if name not in initial.values:
+            raise
+        return name
+    return ""
+
+
+def holding_drives(scenario: Any, initial: Any, free: set[str]) -> dict[str, Any]:
+    """The scenario's drives at rest, but those left out; those of the joints of `initial` replaced
+    by rigid holds."""
     joints = scenario.joints
-    moved = {
+    moved = free | {
         n for n, d in scenario.drives.items()
         if called(getattr(d, "joint", ""), joints) in initial.values
     }  # fmt: skip
