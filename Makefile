@@ -5,7 +5,7 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo paper tolerances test release-check coverage portable lint bench stress truth mutants clean
+.PHONY: demo paper door tolerances test release-check coverage portable lint bench stress truth mutants clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -16,6 +16,12 @@ demo: .venv/installed
 paper: .venv/installed
 	$(BIN)/trsim sweep scenarios/thrust_reverser/paper.yaml -o runs/paper
 	$(BIN)/trsim report --paper thrust-reverser runs/paper -o runs/paper/page
+
+# every load case of the published study of a crew door, and a page with a verdict on each of its statements
+# and the critical envelopes; goes on where it was ended
+door: .venv/installed
+	$(BIN)/trsim sweep scenarios/crew_door/door.yaml -o runs/door
+	$(BIN)/trsim report --paper crew-door runs/door -o runs/door/page
 
 # 896 runs; goes on where it was ended
 tolerances: .venv/installed

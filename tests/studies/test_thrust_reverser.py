@@ -1,6 +1,7 @@
 """The published study: rules on made-up numbers, numbers of runs, figures, page and command."""
 
 import csv
+import dataclasses
 import re
 import shutil
 from pathlib import Path
@@ -19,13 +20,10 @@ from trsim.cli import main
 from trsim.errors import FileError, UsageError
 from trsim.report.page import Cell, Line, Points, Section, Table, Text, page
 from trsim.store.read import read
-from trsim.studies.thrust_reverser import SECTIONS, paper
-from trsim.studies.thrust_reverser.claims import CLAIMS
-from trsim.studies.thrust_reverser.claims.claim import LAW, WORTH
-from trsim.studies.thrust_reverser.figures import FIGURES
-from trsim.studies.thrust_reverser.judge import OF_LAWS, shown
-from trsim.studies.thrust_reverser.numbers import number, word
-from trsim.studies.thrust_reverser.rules import (
+from trsim.studies.claim import LAW, WORTH
+from trsim.studies.judge import OF_LAWS, shown
+from trsim.studies.numbers import number, word
+from trsim.studies.rules import (
     CONFIRMED,
     CONTRADICTED,
     UNDETERMINED,
@@ -39,7 +37,11 @@ from trsim.studies.thrust_reverser.rules import (
     undecided,
     within,
 )
-from trsim.studies.thrust_reverser.runs import Member, Runs
+from trsim.studies.runs import Member, Runs
+from trsim.studies.study import paper
+from trsim.studies.thrust_reverser import STUDY
+from trsim.studies.thrust_reverser.claims import CLAIMS
+from trsim.studies.thrust_reverser.figures import FIGURES
 from trsim.sweep.go import go
 from trsim.sweep.plan import plan
 
@@ -127,7 +129,7 @@ def test_claims_are_of_the_study(scenario):
     keys = [claim.key for claim in CLAIMS]
     assert len(set(keys)) == len(keys)
     for claim in CLAIMS:
-        assert claim.section in SECTIONS and claim.worth in WORTH
+        assert claim.section in STUDY.sections and claim.worth in WORTH
         names = [reading.name for reading in claim.readings]
         assert len(set(names)) == len(names)
 
@@ -184,7 +186,7 @@ def folder(tmp_path_factory):
 def page_folder(folder, tmp_path_factory):
     made = tmp_path_factory.mktemp("page")
     wanted = [one for one in FIGURES if one.number in ("8", "11", "12", "13", "15")]
-    written = paper(folder, made, figures=wanted)
+    written = paper(STUDY, folder, made, figures=wanted)
     assert {path.name for path in written} == {
         *("index.html", "claims.csv", "numbers.csv"),
         *(f"figure_{k}.png" for k in (8, 11, 12, 13)),
@@ -195,7 +197,7 @@ def page_folder(folder, tmp_path_factory):
 def test_apart_is_measured_at_equal_strokes(folder):
     runs = Runs(folder)
     ideal, later = runs.stated("ideal"), runs.of("ideal", 1)
-    assert later.stroke[0] - ideal.stroke[0] == pytest.approx(1e-3)
+    assert later.channel("stroke")[0] - ideal.channel("stroke")[0] == pytest.approx(1e-3)
     assert number(ideal, "apart:door_angle", ideal).value == 0.0
     assert number(later, "apart:door_angle", ideal).value < 1e-4
     assert 1e-4 < number(runs.stated("a_03"), "apart:door_angle", ideal).value < 1e-2
@@ -204,11 +206,11 @@ def test_apart_is_measured_at_equal_strokes(folder):
 
 
 def test_a_run_whose_energy_book_does_not_close_counts_in_nothing(folder, tmp_path, monkeypatch):
-    monkeypatch.setattr("trsim.studies.thrust_reverser.runs.Member.missed", 0.0)
+    monkeypatch.setattr("trsim.studies.runs.Member.missed", 0.0)
     assert not Runs(folder).aside
     faulty = property(lambda member: 0.01 if (member.case, member.index) == ("a_03", 1) else 0.0)
-    monkeypatch.setattr("trsim.studies.thrust_reverser.runs.Member.missed", faulty)
-    paper(folder, tmp_path, figures=())
+    monkeypatch.setattr("trsim.studies.runs.Member.missed", faulty)
+    paper(STUDY, folder, tmp_path, figures=())
     numbers = table(tmp_path / "numbers.csv")
     assert {n["member"] for n in numbers if n["case"] in ("a_03", "b_03")} == {"0"}
     assert "misses 10 mJ" in (tmp_path / "index.html").read_text(encoding="utf-8")
@@ -265,13 +267,14 @@ def test_figures_are_drawn(page_folder):
 
 
 def test_the_same_every_time(page_folder, folder, tmp_path):
-    paper(folder, tmp_path, figures=FIGURES[:0])
+    paper(STUDY, folder, tmp_path, figures=FIGURES[:0])
     for name in ("claims.csv", "numbers.csv"):
         assert (tmp_path / name).read_bytes() == (page_folder / name).read_bytes()
 
 
 def test_the_command(folder, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("trsim.studies.thrust_reverser.FIGURES", ())
+    bare = dataclasses.replace(STUDY, figures=())
+    monkeypatch.setattr("trsim.studies.thrust_reverser.STUDY", bare)
     for arguments, code in ((["--paper", "thrust-reverser", str(folder)], 0),
                             (["--paper", "thrust-reverser", str(folder), str(folder)], 2),
                             (["--paper", "crew-door", str(folder)], 2),
@@ -287,11 +290,11 @@ def test_the_command(folder, tmp_path, capsys, monkeypatch):
 
 def test_a_folder_that_is_no_study(tmp_path, monkeypatch):
     with pytest.raises(FileError):
-        paper(tmp_path, tmp_path / "page")
+        paper(STUDY, tmp_path, tmp_path / "page")
     plain = SimpleNamespace(keys=("joints.A.clearance",), cases=())
     monkeypatch.setattr("trsim.sweep.study.study", lambda folder: plain)
     with pytest.raises(UsageError, match="not of a study"):
-        paper(tmp_path, tmp_path / "page")
+        paper(STUDY, tmp_path, tmp_path / "page")
 
 
 # --- numbers ---------------------------------------------------------------------------------

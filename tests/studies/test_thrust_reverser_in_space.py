@@ -19,15 +19,10 @@ from trsim.scenario.load import load
 from trsim.solve.simulate import simulate
 from trsim.store.hdf5 import write
 from trsim.store.read import read
-from trsim.studies.thrust_reverser import paper
-from trsim.studies.thrust_reverser.claims.spatial import CLAIMS, CONCLUSIONS
-from trsim.studies.thrust_reverser.figures import FIGURES, mechanism, sticking
-from trsim.studies.thrust_reverser.figures.canvas import Canvas, view
-from trsim.studies.thrust_reverser.numbers import number
-from trsim.studies.thrust_reverser.peaks import STUDY, ends, peaks
-from trsim.studies.thrust_reverser.rules import CONFIRMED, CONTRADICTED, UNDETERMINED
-from trsim.studies.thrust_reverser.runs import Runs
-from trsim.studies.thrust_reverser.single import (
+from trsim.studies.numbers import number
+from trsim.studies.rules import CONFIRMED, CONTRADICTED, UNDETERMINED
+from trsim.studies.runs import Runs
+from trsim.studies.single import (
     above,
     apart,
     below,
@@ -36,6 +31,12 @@ from trsim.studies.thrust_reverser.single import (
     opposite,
     steps,
 )
+from trsim.studies.study import paper
+from trsim.studies.thrust_reverser import STUDY
+from trsim.studies.thrust_reverser.claims.spatial import CLAIMS, CONCLUSIONS
+from trsim.studies.thrust_reverser.figures import FIGURES, mechanism, sticking
+from trsim.studies.thrust_reverser.figures.canvas import Canvas, view
+from trsim.studies.thrust_reverser.peaks import PUBLISHED, ends, peaks
 from trsim.sweep.go import go
 from trsim.sweep.plan import plan
 from trsim.sweep.study import study
@@ -122,7 +123,7 @@ def made(folder, tmp_path_factory):
     """The page of the small study, its figures 24 and of when it sticks."""
     page = tmp_path_factory.mktemp("page")
     wanted = [one for one in FIGURES if one.number in ("24", "25 until it sticks")]
-    paper(folder, page, figures=wanted)
+    paper(STUDY, folder, page, figures=wanted)
     return page
 
 
@@ -199,7 +200,7 @@ def test_verdicts_follow_the_mechanics(made):
 
 def test_the_nine_peaks(runs, made):
     rows = peaks(runs)
-    assert [row[2] for row in rows] == [force for odd in (1, 2, 3) for force in STUDY[odd]]
+    assert [row[2] for row in rows] == [force for odd in (1, 2, 3) for force in PUBLISHED[odd]]
     best = max(number(runs.stated(f"spatial_2_{v}"), "largest:actuator_1.force").value
                for v in (418, 419, 421, 422))  # fmt: skip
     _, _, theirs, ours, off, share, speed = rows[3]

@@ -8,8 +8,7 @@ import click
 
 from trsim.cli.frame import NAMED, Answer, framed
 from trsim.errors import UsageError
-
-PAPERS = ("thrust-reverser",)
+from trsim.studies import STUDIES, load
 
 
 @click.command("report")
@@ -46,7 +45,9 @@ PAPERS = ("thrust-reverser",)
 @click.option("--with", "along", multiple=True, metavar="CHANNEL,...",
               help="What else --envelope tells.")  # fmt: skip
 @click.option("--over", metavar="KEY", help="The swept key that figures of a sweep are over.")
-@click.option("--paper", type=click.Choice(PAPERS), help="Judge a published study by its sweep.")
+@click.option(
+    "--paper", type=click.Choice(tuple(STUDIES)), help="Judge a published study by its sweep."
+)
 @click.option("--animate", is_flag=True, help="The motion of one run: animation.glb, .html.")
 @click.option("--magnify-clearance", type=float, metavar="TIMES",
               help="How large --animate draws the play in bearings.")  # fmt: skip
@@ -72,7 +73,7 @@ def command(
         raise UsageError("--magnify-clearance goes with --animate")
     if paper:
         folder = Path(output or os.path.join(runs[0], "paper"))
-        written = judged(runs, folder, options | {"animate": animate})
+        written = judged(paper, runs, folder, options | {"animate": animate})
     elif animate:
         written = animated(answer, runs, folder, magnified, options)
     elif not swept and not any(options.values()):
@@ -91,15 +92,15 @@ def command(
         answer.put(str(path))
 
 
-def judged(studies: tuple[str, ...], folder: Path, options: dict[str, Any]) -> list[Path]:
+def judged(word: str, sweeps: tuple[str, ...], folder: Path, options: dict[str, Any]) -> list[Path]:
     """The files of a published study, made from the folder of its sweep."""
-    from trsim.studies.thrust_reverser import paper
+    from trsim.studies.study import paper
 
-    if len(studies) > 1:
+    if len(sweeps) > 1:
         raise UsageError("--paper takes the folder of one sweep")
     if any(options.values()):
         raise UsageError("--paper goes with no other option than -o")
-    return paper(studies[0], folder)
+    return paper(load(word), sweeps[0], folder)
 
 
 def animated(

@@ -5,15 +5,15 @@ from pathlib import Path
 from trsim.report.asked import table
 from trsim.report.page import Block, Cell, Line, Section, Table, Text
 from trsim.store.target import headed
+from trsim.studies.numbers import number
+from trsim.studies.runs import Runs
 from trsim.studies.thrust_reverser import content
 from trsim.studies.thrust_reverser.claims.spatial import ODD
 from trsim.studies.thrust_reverser.figures import sticking
 from trsim.studies.thrust_reverser.figures.spatial import ACTUATORS, case
-from trsim.studies.thrust_reverser.numbers import number
-from trsim.studies.thrust_reverser.runs import Runs
 
 # N: the largest forces of actuators 1, 2, 3 where 1, 2, 3 is the asynchronous one, section 7.2
-STUDY = {1: (2258.0, 1370.0, 2017.0), 2: (2782.0, 2310.0, 2712.0), 3: (2068.0, 1348.0, 2227.0)}
+PUBLISHED = {1: (2258.0, 1370.0, 2017.0), 2: (2782.0, 2310.0, 2712.0), 3: (2068.0, 1348.0, 2227.0)}
 HEAD = ("asynchronous", "actuator", "study [N]", "here [N]", "difference [N]", "difference [%]",
         "at [mm/s]")  # fmt: skip
 ENDS = ("slower by [mm/s]", "shaft [N*m/rad]", "end [s]", "stroke [mm]", "status", "reason")
@@ -23,10 +23,10 @@ Rows = list[tuple[object, ...]]
 
 def peaks(runs: Runs) -> Rows:
     """The nine peaks; none where a run is missing."""
-    if not all(runs.has(case(odd, speed)) for odd in STUDY for speed in ODD):
+    if not all(runs.has(case(odd, speed)) for odd in PUBLISHED for speed in ODD):
         return []
     rows: Rows = []
-    for odd, study in STUDY.items():
+    for odd, study in PUBLISHED.items():
         for k, theirs in zip(ACTUATORS, study, strict=True):
             word = f"largest:actuator_{k}.force"
             ours, speed = max((number(runs.stated(case(odd, v)), word).value, v) for v in ODD)

@@ -1,5 +1,6 @@
 """What the study of the thrust reverser claims, section by section."""
 
+from trsim.studies.claim import Claim
 from trsim.studies.thrust_reverser.claims import (
     clearance,
     conclusions,
@@ -9,7 +10,6 @@ from trsim.studies.thrust_reverser.claims import (
     spatial,
     speed,
 )
-from trsim.studies.thrust_reverser.claims.claim import Claim
 
 IN_ORDER = (model, clearance, place, speed, rod, spatial, conclusions)
 CLAIMS: tuple[Claim, ...] = (

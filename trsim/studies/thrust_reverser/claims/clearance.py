@@ -1,21 +1,19 @@
 """Section 7.1.1 of the study: the value of the clearance, at A and B together, 0.5 m/s."""
 
-from trsim.studies.thrust_reverser.cases import AB, GIVES, SOFT, A, B
-from trsim.studies.thrust_reverser.claims.claim import (
-    CHOSEN,
+from trsim.studies.claim import CHOSEN, TUNED, Claim, Reading, Series, one, over
+from trsim.studies.rules import alike, falling, rising, steadier, undecided, within
+from trsim.studies.thrust_reverser.cases import (
+    AB,
     EARLY,
+    GIVES,
     LATE,
     ONSET,
     OVERTURN,
-    TUNED,
-    Claim,
-    Reading,
-    Series,
+    SOFT,
+    A,
+    B,
     b_above_a,
-    one,
-    over,
 )
-from trsim.studies.thrust_reverser.rules import alike, falling, rising, steadier, undecided, within
 
 STIFF, ACTUATOR = "contact stiffness with R_i + R_j", "actuator of 1e7 N/m, 10 % damping"
 

@@ -1,8 +1,9 @@
 """Section 8 of the study, where it says more than section 7: number of joints, speed."""
 
-from trsim.studies.thrust_reverser.claims.claim import OVERTURN, Claim, Reading, of, over
+from trsim.studies.claim import Claim, Reading, of, over
+from trsim.studies.rules import rising
+from trsim.studies.thrust_reverser.cases import OVERTURN
 from trsim.studies.thrust_reverser.claims.speed import pins
-from trsim.studies.thrust_reverser.rules import rising
 
 FROM_A = (("A", "a_03"), ("A, B", "ab_03"), ("A, P, Q, B", "abpq_03"))
 FROM_B = (("B", "b_03"), ("A, B", "ab_03"), ("A, P, Q, B", "abpq_03"))

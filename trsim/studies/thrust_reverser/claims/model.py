@@ -1,7 +1,7 @@
 """Sections 3 and 6.2 of the study: contact and friction laws, the pendulum that verifies."""
 
-from trsim.studies.thrust_reverser.claims.claim import LAW, Claim, Series, one
-from trsim.studies.thrust_reverser.rules import exact, undecided
+from trsim.studies.claim import LAW, Claim, Series, one
+from trsim.studies.rules import exact, undecided
 
 CLAIMS = (
     Claim(

@@ -1,16 +1,8 @@
 """Section 7.1.2 of the study: clearance of 0.3 mm at A alone and at B alone, 0.5 m/s."""
 
-from trsim.studies.thrust_reverser.claims.claim import (
-    CHOSEN,
-    OVERTURN,
-    TUNED,
-    Claim,
-    Reading,
-    Series,
-    one,
-    over,
-)
-from trsim.studies.thrust_reverser.rules import rising, within
+from trsim.studies.claim import CHOSEN, TUNED, Claim, Reading, Series, one, over
+from trsim.studies.rules import rising, within
+from trsim.studies.thrust_reverser.cases import OVERTURN
 
 EACH = (("A", "a_03"), ("B", "b_03"))
 SOFT = (("A", "a_03_soft"), ("B", "b_03_soft"))

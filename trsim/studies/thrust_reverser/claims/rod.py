@@ -1,7 +1,8 @@
 """Section 7.1.4 of the study: rigid and flexible rod, five of them, 0.3 mm at B, and at A."""
 
-from trsim.studies.thrust_reverser.claims.claim import OVERTURN, Claim, Reading, Series, of
-from trsim.studies.thrust_reverser.rules import falling, within
+from trsim.studies.claim import Claim, Reading, Series, of
+from trsim.studies.rules import falling, within
+from trsim.studies.thrust_reverser.cases import OVERTURN
 
 RODS = (
     ("0.5 kg, same mass", "{}_03", "{}_03_flexible_light", "damping of 1 us"),

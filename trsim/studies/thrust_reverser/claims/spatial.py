@@ -1,10 +1,8 @@
 """Section 7.2 of the study: five doors and three actuators, one of them asynchronous."""
 
-from trsim.studies.thrust_reverser.claims.claim import TUNED, Claim, Reading, Series
-from trsim.studies.thrust_reverser.figures import sticking
-from trsim.studies.thrust_reverser.figures.spatial import ACTUATORS, SHAFTS, case
-from trsim.studies.thrust_reverser.rules import Rule, exact
-from trsim.studies.thrust_reverser.single import (
+from trsim.studies.claim import TUNED, Claim, Reading, Series
+from trsim.studies.rules import Rule, exact
+from trsim.studies.single import (
     above,
     apart,
     below,
@@ -13,6 +11,8 @@ from trsim.studies.thrust_reverser.single import (
     opposite,
     steps,
 )
+from trsim.studies.thrust_reverser.figures import sticking
+from trsim.studies.thrust_reverser.figures.spatial import ACTUATORS, SHAFTS, case
 
 ODD = (418, 419, 421, 422)  # mm/s
 UNFITTED = ODD[1:]  # where no force of 1 or 3 is among the peaks that were fitted

@@ -1,16 +1,10 @@
 """Section 7.1.3 of the study: 0.5 and 1.0 m/s, 0.5 mm; at B in its text, and at A in figures."""
 
+from trsim.studies.claim import CHOSEN, Claim, Reading, over
+from trsim.studies.rules import falling, ratio, rising
+from trsim.studies.thrust_reverser.cases import OVERTURN, b_above_a
 from trsim.studies.thrust_reverser.cases import SPEED_AB as AB
 from trsim.studies.thrust_reverser.cases import SPEED_B as B
-from trsim.studies.thrust_reverser.claims.claim import (
-    CHOSEN,
-    OVERTURN,
-    Claim,
-    Reading,
-    b_above_a,
-    over,
-)
-from trsim.studies.thrust_reverser.rules import falling, ratio, rising
 
 PLAIN = "twice the speed doubles every rate even of the ideal mechanism"
 

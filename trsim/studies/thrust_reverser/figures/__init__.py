@@ -1,5 +1,6 @@
 """The figures of the study, by the numbers they have there."""
 
+from trsim.studies.drawing import Drawn
 from trsim.studies.thrust_reverser.figures import (
     clearance,
     laws,
@@ -11,7 +12,6 @@ from trsim.studies.thrust_reverser.figures import (
     speed,
     sticking,
 )
-from trsim.studies.thrust_reverser.figures.drawing import Drawn
 
 IN_ORDER = (laws, pendulum, clearance, place, speed, rod, mechanism, spatial, sticking)
 FIGURES: tuple[Drawn, ...] = tuple(drawn for module in IN_ORDER for drawn in module.FIGURES)

@@ -4,16 +4,15 @@ from typing import Any
 
 from trsim.report.display import Shown
 from trsim.report.style import panels
+from trsim.studies.drawing import Drawn, with_legend
 from trsim.studies.thrust_reverser.cases import AB, GIVES, SOFT
 from trsim.studies.thrust_reverser.figures.drawing import (
     DOOR,
-    Drawn,
     curves,
     journal,
     over_time,
     section,
     timed,
-    with_legend,
 )
 
 

@@ -1,19 +1,17 @@
-"""What the figures of the study are put together from: panels with a letter, on common scales."""
+"""Panels of the figures of the reverser: curves over time, contact forces, journals, sections."""
 
-from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from trsim.arrays import Array
-from trsim.report.display import DEFAULT, Shown, display_units
+from trsim.report.display import Shown
 from trsim.report.figures import contact_history
 from trsim.report.orbits import circle, coloured, path, square
 from trsim.report.style import colour, panels, thinned
-from trsim.studies.thrust_reverser.cases import Cases
-from trsim.studies.thrust_reverser.runs import Runs
+from trsim.studies.drawing import fluctuates, lettered, overlaid, with_legend
 
-UNITS = display_units(DEFAULT)
 ACCELERATION, VELOCITY = "angular acceleration", "angular velocity"
 DOOR = ("door_angle", "door_angle.rate", "door_angle.acceleration")
 QUANTITIES = {
@@ -24,33 +22,6 @@ QUANTITIES = {
 MOST = 100_000  # points of a path
 ROOM = 1.15  # half width of a panel over the radius of the circle in it
 KILO = {"deg/s\u00b2": (1e-3, "10\u00b3 deg/s\u00b2")}  # of numbers too long for an axis
-
-
-class Drawn(NamedTuple):
-    """A figure of the study, and what it is drawn from."""
-
-    number: str  # of the study, with a letter of ours where it has several versions
-    panels: str  # the letters of the study
-    caption: str
-    cases: Cases
-    draw: Callable[[list[Shown]], Any]  # of the runs as stated, with the labels of the cases
-
-    @property
-    def anchor(self) -> str:
-        """Its name as a file and as a place on the page."""
-        return f"figure_{self.number.replace(' ', '_')}"
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return tuple(case for _, case in self.cases)
-
-    def made(self, runs: Runs) -> Any:
-        """The figure."""
-        return self.draw([Shown(runs.stated(case).run, label, UNITS) for label, case in self.cases])
-
-
-def lettered(axes: Any, letter: str, text: str) -> None:
-    axes.set_title(f"({letter}) {text}" if letter else text, loc="left")
 
 
 def values(shown: Shown, channel: str) -> tuple[Array, str]:
@@ -86,11 +57,6 @@ def curves(axes: Any, runs: Sequence[Shown], channel: str, letter: str, text: st
     lettered(axes, letter, text or quantity)
 
 
-def fluctuates(x: Array) -> float:
-    """How far a curve jumps from row to row."""
-    return float(np.max(np.abs(np.diff(x)), initial=0.0))
-
-
 def forces(axes: Any, runs: Sequence[Shown], joint: str, letter: str, text: str = "") -> None:
     """The force in a contact at accepted steps, zero in flight."""
     found = [contact_history(shown, joint) for shown in runs]
@@ -99,16 +65,6 @@ def forces(axes: Any, runs: Sequence[Shown], joint: str, letter: str, text: str 
     axes.margins(x=0.01)
     axes.set_ylim(bottom=0.0)
     lettered(axes, letter, text or f"contact force at {joint}")
-
-
-def overlaid(
-    axes: Any, runs: Sequence[Shown], paths: Sequence[tuple[Array, Array]],
-    widths: Sequence[float], colours: Sequence[int] = (), **style: Any,
-) -> None:  # fmt: skip
-    """A path of each run; the widest behind the others."""
-    for k in np.argsort(np.negative(widths), kind="stable").tolist():
-        shade = colour(colours[k] if colours else k)
-        axes.plot(*paths[k], color=shade, label=runs[k].label, **style)
 
 
 def plane(
@@ -179,26 +135,3 @@ def orbit(axes: Any, shown: Shown, joint: str, letter: str, text: str) -> Any:
 def timed(axes: Sequence[Any]) -> None:
     for a in axes:
         a.set_xlabel("time (s)")
-
-
-def with_legend(figure: Any, axes: Any, runs: Sequence[Shown], most: int = 3) -> Any:
-    """The figure, with its legend below, in the order of the runs, `most` to a line."""
-    lines, names = axes.get_legend_handles_labels()
-    found = dict(zip(names, lines, strict=True))
-    labels = [shown.label for shown in runs if shown.label in found]
-    columns = 1 if max(map(len, labels)) > 34 else min(most, len(labels))
-    shown = figure.legend([found[n] for n in labels], labels, loc="outside lower center",
-                          ncols=columns)  # fmt: skip
-    for line in shown.get_lines():
-        line.set_linewidth(1.6)
-    return figure
-
-
-def alike(rows: Sequence[Sequence[Any]], x: bool = True) -> None:
-    """One scale along each row of panels."""
-    for row in rows:
-        for axis in ("x", "y") if x else ("y",):
-            limits = [getattr(a, f"get_{axis}lim")() for a in row]
-            low, high = min(one[0] for one in limits), max(one[1] for one in limits)
-            for a in row:
-                getattr(a, f"set_{axis}lim")(low, high)

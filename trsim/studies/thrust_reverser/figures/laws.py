@@ -7,8 +7,8 @@ import numpy as np
 from trsim.errors import UsageError
 from trsim.report.display import Shown
 from trsim.report.style import colour, panels
-from trsim.studies.thrust_reverser.figures.drawing import Drawn
-from trsim.studies.thrust_reverser.numbers import Number
+from trsim.studies.drawing import Drawn
+from trsim.studies.numbers import Number
 
 MU, V0, V1 = 0.3, 1e-4, 1e-3  # -, m/s, m/s: of the study
 RADIUS, STEEL, RESTITUTION = 0.010, (207e9, 0.29), 0.9  # m; Pa, -: of the study

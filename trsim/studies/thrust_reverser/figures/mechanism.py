@@ -11,8 +11,8 @@ from trsim.report.animation import solids
 from trsim.report.animation.motion import Motion, motion
 from trsim.report.display import Shown
 from trsim.report.style import panels
+from trsim.studies.drawing import Drawn, alike
 from trsim.studies.thrust_reverser.figures.canvas import Canvas, view
-from trsim.studies.thrust_reverser.figures.drawing import Drawn, alike
 from trsim.studies.thrust_reverser.figures.spatial import ACTUATORS
 
 Array = NDArray[np.float64]

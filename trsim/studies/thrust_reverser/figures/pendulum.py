@@ -4,7 +4,7 @@ from typing import Any
 
 from trsim.report.display import Shown
 from trsim.report.style import DASHES, colour, panels
-from trsim.studies.thrust_reverser.figures.drawing import Drawn, lettered, with_legend
+from trsim.studies.drawing import Drawn, lettered, with_legend
 
 MESHES = (("8 elements", "pendulum_8"), ("16 elements", "pendulum_16"))
 

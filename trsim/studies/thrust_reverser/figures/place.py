@@ -5,15 +5,13 @@ from typing import Any
 from trsim.report.display import Shown
 from trsim.report.orbits import square
 from trsim.report.style import panels
+from trsim.studies.drawing import Drawn, alike, lettered
 from trsim.studies.thrust_reverser.figures.drawing import (
     ACCELERATION,
     DOOR,
     ROOM,
     VELOCITY,
-    Drawn,
-    alike,
     journal,
-    lettered,
     orbit,
     over_time,
     plane,

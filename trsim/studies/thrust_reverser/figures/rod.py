@@ -5,10 +5,10 @@ from typing import Any
 from trsim.report.display import Shown
 from trsim.report.orbits import square
 from trsim.report.style import panels
+from trsim.studies.drawing import Drawn
 from trsim.studies.thrust_reverser.figures.drawing import (
     DOOR,
     ROOM,
-    Drawn,
     forces,
     orbit,
     over_time,

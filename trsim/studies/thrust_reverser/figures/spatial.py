@@ -6,8 +6,9 @@ from typing import Any
 
 from trsim.report.display import Shown
 from trsim.report.style import COLOURS, colour, panels, thinned
-from trsim.studies.thrust_reverser.cases import Cases
-from trsim.studies.thrust_reverser.figures.drawing import Drawn, lettered, timed, with_legend
+from trsim.studies.claim import Cases
+from trsim.studies.drawing import Drawn, lettered, with_legend
+from trsim.studies.thrust_reverser.figures.drawing import timed
 
 ACTUATORS = (1, 2, 3)
 SPEEDS = (418, 419, 420, 421, 422)  # mm/s

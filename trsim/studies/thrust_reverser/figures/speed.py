@@ -6,18 +6,16 @@ from typing import Any
 from trsim.report.display import Shown
 from trsim.report.orbits import square
 from trsim.report.style import panels
+from trsim.studies.drawing import Drawn, alike, with_legend
 from trsim.studies.thrust_reverser.cases import SPEED_AB, SPEED_B
 from trsim.studies.thrust_reverser.figures.drawing import (
     DOOR,
     ROOM,
-    Drawn,
-    alike,
     journal,
     orbit,
     panel,
     section,
     timed,
-    with_legend,
 )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from trsim.report.display import Shown
 from trsim.report.maps import cells
 from trsim.report.style import panels
-from trsim.studies.thrust_reverser.figures.drawing import Drawn
+from trsim.studies.drawing import Drawn
 
 SPEEDS = (418, 416, 414, 412, 410, 408)  # mm/s, of actuator 2
 STIFFNESSES = ("0", "0.176", "0.53", "1.76", "5.3")  # N m/rad, of the shaft

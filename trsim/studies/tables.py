@@ -6,10 +6,10 @@ from pathlib import Path
 from trsim.report.asked import table
 from trsim.report.page import Cell, Ensembles, Line, Table
 from trsim.store.target import headed
-from trsim.studies.thrust_reverser.claims.claim import INDEPENDENT, WORTH
-from trsim.studies.thrust_reverser.figures.drawing import Drawn
-from trsim.studies.thrust_reverser.judge import Row, Source
-from trsim.studies.thrust_reverser.rules import CONFIRMED
+from trsim.studies.claim import INDEPENDENT, WORTH
+from trsim.studies.drawing import Drawn
+from trsim.studies.judge import Row, Source
+from trsim.studies.rules import CONFIRMED
 
 CLAIMS = ("claim", "section", "figure", "statement", "reading", "verdict", "worth", "rule",
           "numbers", "decided_by", "holds_in", "members", "assumptions", "runs")  # fmt: skip

@@ -6,14 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trsim.studies.thrust_reverser.claims.claim import LAW, Claim, Reading, Series
-from trsim.studies.thrust_reverser.figures import laws
-from trsim.studies.thrust_reverser.numbers import Number, number
-from trsim.studies.thrust_reverser.rules import UNDETERMINED, Judged, interval
-from trsim.studies.thrust_reverser.runs import Member, Runs
+from trsim.studies.claim import LAW, Claim, Reading, Series
+from trsim.studies.numbers import Number, number
+from trsim.studies.rules import UNDETERMINED, Judged, interval
+from trsim.studies.runs import Member, Runs
 
-REFERENCES = {"pendulum_8": "pendulum_16"}  # of cases that are no chain; of those it is `ideal`
-IDEAL = "ideal"
 OF_LAWS = "trsim.laws"  # instead of a run file
 
 
@@ -46,11 +43,19 @@ class Row(NamedTuple):
 
 
 Display = Callable[[str], tuple[float, str]]
+Law = Callable[[str], Number]
+Reference = Callable[[str], str]
 
 
-def judged(runs: Runs, claims: Sequence[Claim], display: Display) -> Iterator[Row]:
-    """A row for each reading of each claim."""
-    known = evaluated(runs, claims)
+def judged(
+    runs: Runs, claims: Sequence[Claim], display: Display, law: Law, reference: Reference
+) -> Iterator[Row]:
+    """A row for each reading of each claim.
+
+    law: the number of laws that a word of LAW tells.  reference: the case from which `apart` of
+    another one is measured.
+    """
+    known = evaluated(runs, claims, law, reference)
     for claim in claims:
         for reading in claim.readings:
             yield row(runs, claim, reading, display, known)
@@ -59,18 +64,18 @@ def judged(runs: Runs, claims: Sequence[Claim], display: Display) -> Iterator[Ro
 Known = dict[tuple[str, int, str], Number]  # case, member, word -> number
 
 
-def evaluated(runs: Runs, claims: Sequence[Claim]) -> Known:
+def evaluated(runs: Runs, claims: Sequence[Claim], law: Law, reference: Reference) -> Known:
     """All numbers the claims rest on; run by run, as some of them fill much memory."""
     words: dict[str, dict[str, None]] = {}
     for series in (s for claim in claims for reading in claim.readings for s in reading.series):
         words.setdefault(series.case, {})[series.word] = None
     known: Known = {}
     for word in words.pop(LAW, ()):
-        known[LAW, 0, word] = laws.number(word)
+        known[LAW, 0, word] = law(word)
     for case, asked in words.items():
         for member in runs.sound(case):
             for word in asked:
-                found = number(member, word, reference(runs, member, word))
+                found = number(member, word, other(runs, member, word, reference))
                 known[case, member.index, word] = found
             member.forget()
     return known
@@ -109,11 +114,11 @@ def source(
     return Source(claim.key, reading.name, *series[:2], index, series.word, *found, file)
 
 
-def reference(runs: Runs, member: Member, word: str) -> Member | None:
+def other(runs: Runs, member: Member, word: str, reference: Reference) -> Member | None:
     """What `apart` is measured from."""
     if not word.startswith("apart:"):
         return None
-    case = REFERENCES.get(member.case, IDEAL)
+    case = reference(member.case)
     return runs.stated(case) if runs.has(case) else None
 
 

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from trsim.studies.thrust_reverser.rules import (
+from trsim.studies.rules import (
     CONFIRMED,
     CONTRADICTED,
     SEEN,
@@ -19,6 +19,7 @@ from trsim.studies.thrust_reverser.rules import (
 )
 
 NEWTONS = 10.0  # N: a smaller difference of forces of kilonewtons is none
+NO_BOUND = 1e9  # a bound that is none
 
 
 def judged(holds: bool, told: str) -> Judged:
@@ -88,3 +89,54 @@ def opposite() -> Rule:
         return judged(bool(first * second < 0.0), told)
 
     return Rule("the two differences have other signs", judge)
+
+
+def bounded(low: float, high: float, shown: str) -> Rule:
+    """Every case lies between two numbers, in SI; shown: these for the reader, with a unit."""
+
+    def judge(values: Array) -> Judged:
+        inside = (values >= low) & (values <= high)
+        if inside.all() or not inside.any():
+            return judged(bool(inside.all()), f"all {shown}")
+        return Judged(CONTRADICTED, f"{int(inside.sum())} of {inside.size} {shown}", 0, 1)
+
+    return Rule(f"all {shown}", judge)
+
+
+def apart_by(low: float, high: float, factor: float, unit: str) -> Rule:
+    """The size of the second case less that of the first lies between two numbers, in SI.
+
+    factor, unit: for the reader.
+    """
+
+    def judge(values: Array) -> Judged:
+        first, second = np.abs(values[:, 0])
+        step = float(second - first)
+        told = f"{factor * step:+.3g} {unit}".replace("-", "\u2212")
+        return judged(bool(low <= step <= high), told)
+
+    most = f" and {factor * high:.3g}" if high < NO_BOUND else ""
+    between = f"between {factor * low:.3g}{most}" if most else f"above {factor * low:.3g}"
+    return Rule(f"second less first {between} {unit}".replace("-", "\u2212"), judge)
+
+
+def differ(margin: float, unit: str) -> Rule:
+    """Two cases differ by more than a margin in SI, either way."""
+
+    def judge(values: Array) -> Judged:
+        step = float(values[1, 0] - values[0, 0])
+        told = f"{step:+.3g} {unit}".replace("-", "\u2212")
+        return judged(abs(step) > margin, told)
+
+    return Rule(f"both differ by more than {margin:g} {unit}", judge)
+
+
+def other_signs() -> Rule:
+    """One of two cases is positive, the other one negative."""
+
+    def judge(values: Array) -> Judged:
+        first, second = values[:, 0]
+        told = f"{first:+.4g} and {second:+.4g}".replace("-", "\u2212")
+        return judged(bool(first * second < 0.0), told)
+
+    return Rule("one positive, one negative", judge)

@@ -1,8 +1,8 @@
 """A number of a run, told in a word: fluctuation:door_angle.rate@stroke=0.15..0.48.
 
-Words are those of trsim.analyse.outputs, and a few that only a study of a stroke needs.  The window
-is one of stroke, m, since the runs of an ensemble start at different strokes; without one it is the
-whole run.
+Words are those of trsim.analyse.outputs, and a few that only a study needs.  The window is one of a
+channel in SI, of a stroke or an angle that the motion passes through, since the runs of an ensemble
+start at different places; without one it is the whole run.
 """
 
 import fnmatch
@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from trsim.analyse.outputs import scalar
 from trsim.errors import UsageError, known
-from trsim.studies.thrust_reverser.runs import Member
+from trsim.studies.runs import Member
 
-STROKE = "stroke="
+STROKE = "stroke"  # over which places are told without a window
+SEEN = 1.0  # N: a contact force from which on a contact has begun
 Inside = NDArray[np.bool_]
 
 
@@ -27,7 +28,8 @@ class Word(NamedTuple):
     kind: str
     of: str  # a channel, a section or a contact
     text: str  # the whole of it
-    begin: float = -math.inf  # m of stroke
+    over: str = STROKE  # the channel of the window
+    begin: float = -math.inf
     end: float = math.inf
 
 
@@ -46,10 +48,11 @@ def word(text: str) -> Word:
         raise UsageError(f"no such number: '{text}'", known(kind, tuple(KINDS)))
     if not window:
         return Word(kind, of, text)
-    begin, _, end = window.removeprefix(STROKE).partition("..")
-    if not window.startswith(STROKE) or not end:
-        raise UsageError(f"not a window of stroke: '{text}'", f"Write @{STROKE}0.15..0.48.")
-    return Word(kind, of, text, float(begin), float(end))
+    over, _, bounds = window.partition("=")
+    begin, _, end = bounds.partition("..")
+    if not over or not end:
+        raise UsageError(f"not a window of a channel: '{text}'", f"Write @{STROKE}=0.15..0.48.")
+    return Word(kind, of, text, over, float(begin), float(end))
 
 
 def number(member: Member, text: str, reference: Member | None = None) -> Number:
@@ -69,7 +72,10 @@ def number(member: Member, text: str, reference: Member | None = None) -> Number
 
 def inside(member: Member, asked: Word) -> Inside:
     """The rows in the window."""
-    return (member.stroke >= asked.begin) & (member.stroke <= asked.end)
+    if math.isinf(asked.end):
+        return np.ones(member.time.size, dtype=bool)
+    place = member.channel(asked.over)
+    return (place >= asked.begin) & (place <= asked.end)
 
 
 # --- kinds of numbers ------------------------------------------------------------------------
@@ -95,11 +101,48 @@ def scaled(member: Member, asked: Word) -> Number:
 
 
 def place(member: Member, asked: Word) -> Number:
-    """The stroke at which the largest value is met, of a jolt the largest magnitude, m."""
+    """Where the largest value is met, of a jolt the largest magnitude, in the channel of the
+    window."""
     at = np.flatnonzero(inside(member, asked))
     values = member.channel(asked.of)[at]
     found = at[np.argmax(np.abs(values) if asked.kind == "jolt" else values)]
-    return Number(float(member.stroke[found]), "m")
+    return where(member, asked, int(found))
+
+
+def where(member: Member, asked: Word, row: int) -> Number:
+    """The channel of the window in one row."""
+    return Number(float(member.channel(asked.over)[row]), member.run.unit(asked.over))
+
+
+def begins(member: Member, asked: Word) -> Number:
+    """Where a force first exceeds what is seen, in the channel of the window; nan: nowhere."""
+    found = np.flatnonzero(inside(member, asked) & (member.channel(asked.of) > SEEN))
+    if not found.size:
+        return Number(math.nan, member.run.unit(asked.over))
+    return where(member, asked, int(found[0]))
+
+
+def turns(member: Member, asked: Word) -> Number:
+    """Where a channel first falls through zero, by a line between rows; nan: nowhere."""
+    x, place = member.channel(asked.of), member.channel(asked.over)
+    found = np.flatnonzero(inside(member, asked)[:-1] & (x[:-1] > 0.0) & (x[1:] <= 0.0))
+    if not found.size:
+        return Number(math.nan, member.run.unit(asked.over))
+    k = int(found[0])
+    share = x[k] / (x[k] - x[k + 1])
+    at = place[k] + share * (place[k + 1] - place[k])
+    return Number(float(at), member.run.unit(asked.over))
+
+
+def left(member: Member, asked: Word) -> Number:
+    """What a pass of a sizing left of the first force of the drive, by the number of the pass."""
+    passes = str(member.run.group("provenance")["sizing"]).split(",")
+    return Number(float(passes[int(asked.of)]), "-")
+
+
+def status(member: Member, asked: Word) -> Number:
+    """1 where the run ended so, else 0."""
+    return Number(float(member.run.attributes["status"] == asked.of), "-")
 
 
 def most(member: Member, asked: Word) -> Number:
@@ -132,11 +175,11 @@ def drift(member: Member, asked: Word) -> Number:
 
 
 def apart(member: Member, asked: Word, reference: Member | None) -> Number:
-    """The largest difference to the reference at equal strokes, or at equal times without one."""
+    """The largest difference to the reference at equal places, or at equal times without one."""
     if reference is None:
         raise UsageError(f"{member.file}: there is no run to measure from")
-    mine, other = ((m.stroke if "stroke" in m.run.units else m.time, m.channel(asked.of))
-                   for m in (member, reference))  # fmt: skip
+    over = asked.over if asked.over in member.run.units else "time"
+    mine, other = ((m.channel(over), m.channel(asked.of)) for m in (member, reference))
     common = (mine[0] >= max(other[0][0], asked.begin)) & (mine[0] <= min(other[0][-1], asked.end))
     at, found = mine[0][common], mine[1][common]
     away = [np.interp(at, other[0], column) for column in np.atleast_2d(other[1].T)]
@@ -145,7 +188,10 @@ def apart(member: Member, asked: Word, reference: Member | None) -> Number:
 
 
 # as in outputs.py
-SHARED = ("fluctuation", "range", "mean", "dispersion", "flight", "impacts", "summary")
+SHARED = (
+    *("fluctuation", "range", "mean", "final", "least", "dispersion", "flight", "impacts"),
+    *("summary", "solver"),
+)
 KINDS: dict[str, Callable[..., Number] | None] = {
     **dict.fromkeys(SHARED),
     "peak": peak,
@@ -158,4 +204,8 @@ KINDS: dict[str, Callable[..., Number] | None] = {
     "orbit": orbit,
     "drift": drift,
     "apart": apart,
+    "begins": begins,
+    "turns": turns,
+    "status": status,
+    "left": left,
 }

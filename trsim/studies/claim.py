@@ -1,21 +1,19 @@
-"""A claim of the study, in our words, and the readings of it that can be decided."""
+"""A claim of a study, in our words, and the readings of it that can be decided."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from trsim.studies.thrust_reverser.cases import Cases
-from trsim.studies.thrust_reverser.rules import Rule
+from trsim.studies.rules import Rule
+
+Cases = tuple[tuple[str, str], ...]  # (label, case) of what is compared
 
 # what agreement with a claim is worth
 INDEPENDENT = "independent"
 TUNED = "tuned"  # our data were made to agree: it proves nothing
-CHOSEN = "chosen"  # of several pins the one that agrees was taken for B: a selection
+CHOSEN = "chosen"  # of several choices the one that agrees was taken: a selection
 WORTH = {INDEPENDENT: "", TUNED: "by construction", CHOSEN: "by selection"}
 
-LAW = "law"  # instead of a case: a number of trsim.laws, see laws.py
-OVERTURN = "@stroke=0.15..0.48"  # m of stroke: from the touch of the lug to before the end
-ONSET = "@stroke=0.149..0.2"  # the impacts after the touch
-EARLY, LATE = "@stroke=0.15..0.25", "@stroke=0.35..0.48"
+LAW = "law"  # instead of a case: a number of trsim.laws, see `law` of a study
 
 
 class Series(NamedTuple):
@@ -55,13 +53,6 @@ def over(word: str, *cases: tuple[str, str]) -> tuple[Series, ...]:
 def of(what: str, readings: Iterable[Reading]) -> tuple[Reading, ...]:
     """Readings with what they are of before their names."""
     return tuple(reading._replace(name=f"{what}, {reading.name}") for reading in readings)
-
-
-def b_above_a(cases: Cases, name: str = "{}") -> tuple[Reading, ...]:
-    """The spread of the section at A and at B; `name` has a place for the label of a case."""
-    return tuple(Reading(name.format(label), tuple(
-        Series(pin, case, f"dispersion:{pin}_orbit{OVERTURN}") for pin in "AB"))
-        for label, case in cases)  # fmt: skip
 
 
 def one(*series: Series, note: str = "") -> tuple[Reading, ...]:

@@ -1,9 +1,10 @@
-"""The runs of the study: of every case its ensemble, the member as stated first.
+"""The runs of a study: of every case its ensemble, the member as stated first.
 
 The runs of a grid are no ensemble: each is a case of its own, under the name of its file.
 """
 
 import os
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 
@@ -14,7 +15,6 @@ from trsim.errors import UsageError
 from trsim.statuses import WELL
 from trsim.store.read import Run
 
-GRIDS = ("spatial_jam",)
 BOOK = 1e-3  # J an energy book may miss; the chain has 6 J, and misses 1e-8 or, with bars, 1e-4
 
 
@@ -35,11 +35,6 @@ class Member:
     def time(self) -> Array:
         return self.channel("time")
 
-    @property
-    def stroke(self) -> Array:
-        """The stroke of the fairing, m: runs that start elsewhere are compared at equal strokes."""
-        return self.channel("stroke")
-
     @cached_property
     def missed(self) -> float:
         """What the energy book misses at most, J."""
@@ -55,24 +50,26 @@ class Member:
 class Runs:
     """All members of a study, and how many of each case are planned and missing.
 
+    grids: cases whose runs are no ensemble, but each a case of its own.
+    book: J, what an energy book may miss.
     Raises FileError where there is no sweep in the folder, UsageError for one without cases.
     """
 
-    def __init__(self, folder: str | Path) -> None:
+    def __init__(self, folder: str | Path, grids: Sequence[str] = (), book: float = BOOK) -> None:
         from trsim.store.read import read
         from trsim.sweep.study import study
 
         self.members: dict[str, list[Member]] = {}
         self.missing: dict[str, int] = {}
         self.planned: dict[str, int] = {}
-        self.folder = Path(folder)
+        self.folder, self.book = Path(folder), book
         found = study(folder)
         if "case" not in found.keys:
-            hint = "`make paper` says how it is made: trsim sweep thrust_reverser/paper.yaml."
+            hint = "Name the folder of a sweep over the cases of a study, see docs/studies.md."
             raise UsageError(f"{folder} is the sweep of one scenario, not of a study", hint)
         for case in found.cases:
             name = str(case.values["case"])
-            name = case.name if name in GRIDS else name
+            name = case.name if name in grids else name
             index = self.planned.get(name, 0)
             self.planned[name] = index + 1
             if case.status in WELL:
@@ -91,12 +88,12 @@ class Runs:
 
     def sound(self, case: str) -> list[Member]:
         """The members of an ensemble that count."""
-        return [member for member in self.members.get(case, ()) if member.missed <= BOOK]
+        return [member for member in self.members.get(case, ()) if member.missed <= self.book]
 
     @property
     def aside(self) -> list[Member]:
         """The members that do not: their energy book does not close."""
-        return [m for members in self.members.values() for m in members if m.missed > BOOK]
+        return [m for members in self.members.values() for m in members if m.missed > self.book]
 
     def of(self, case: str, index: int) -> Member | None:
         return next((m for m in self.members.get(case, ()) if m.index == index), None)

@@ -1,0 +1,152 @@
+"""The crew door against a separate program for the same data, and against statics and momentum."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from trsim.assemble.assemble import assemble
+from trsim.scenario.load import load
+
+from .runs import run
+
+DOOR = Path(__file__).parent.parent / "scenarios" / "crew_door"
+OTHER = json.loads((Path(__file__).parent / "data" / "crew_door_prototype.json").read_text())
+
+
+def door(name, *sets):
+    return run(load(DOOR / f"{name}.yaml", list(sets)))
+
+
+def test_three_freedoms_and_nothing_redundant():
+    m = assemble(load(DOOR / "mechanism.yaml"))
+    assert m.mobility == m.mobility_by_count == 3
+    assert not m.redundant and not m.singular
+    bodies = load(DOOR / "mechanism.yaml").bodies
+    assert len(bodies) == 17 and sum(body.mass for body in bodies.values()) == pytest.approx(139.5)
+
+
+@pytest.fixture(scope="module")
+def opened():
+    return door("opened")
+
+
+def test_the_lifted_door(opened):
+    """Angles of handles and gearbox, and the lift, at 110 deg of the latch."""
+    assert np.degrees(opened["latch_angle"][-1]) == pytest.approx(110.0, abs=1e-6)
+    for name, angle in OTHER["angles_at_latch_110"].items():
+        assert np.degrees(opened[name][-1]) == pytest.approx(angle, abs=0.05)
+    assert 1e3 * opened["lift"][-1] == pytest.approx(OTHER["lift_at_latch_110_mm"], abs=0.1)
+    assert opened["latch_angle"][-1] == pytest.approx(1.5 * opened["gearbox_angle"][-1], abs=1e-9)
+
+
+def about_x(angle):
+    """The rotation about x."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+
+LEAN = about_x(np.radians(15.0))  # from the drawing to the world
+
+
+def from_outside(r):
+    """All that acts on the mechanism from the fuselage and by weight: (place, force, moment)."""
+    drawn = {name: LEAN @ np.array(at) for name, at in {
+        "fwd": [-0.28, 0, 0], "aft": [0.28, 0, 0], "pivot": [0.46, 0.345, 0.84],
+        "jettison": [-0.36, 0.14, 1.09], "spring": [0.46, 0.90, 1.415], "wire": [0.44, 0.02, 1.30],
+    }.items()}  # fmt: skip
+    none = np.zeros(3)
+    yield drawn["fwd"], r["hinge.locating_force"][-1], none
+    yield drawn["aft"], r["hinge.floating_force"][-1], none
+    for place, joint in (("pivot", "cb_pivot"), ("jettison", "jett_bearing")):
+        yield drawn[place], r[f"{joint}.reaction"][-1], r[f"{joint}.reaction_moment"][-1]
+    yield drawn["jettison"], none, np.array([-1.0, 0, 0]) * r["jett_hold.force"][-1]
+    on_arm = np.array([0.46, 0.32501, 0.97452]) - [0.46, 0.345, 0.84]
+    arm = drawn["pivot"] + LEAN @ about_x(r["cb_angle"][-1]) @ on_arm
+    on_door = np.array([0.38, 0.05, 0.69]) - [0, -0.045, 0.95]
+    door = r["door.position"][-1] + LEAN @ about_x(r["opening"][-1]) @ on_door
+    for name, far, near in (("spring", "cb_spring", arm), ("wire", "wire", door)):
+        way = drawn[name] - near
+        yield near, r[f"{far}.force"][-1] * way / np.linalg.norm(way), none
+    for name, body in load(DOOR / "mechanism.yaml").bodies.items():
+        yield r[f"{name}.position"][-1], np.array([0, 0, -9.81 * body.mass]), none
+
+
+def test_reactions_balance_the_weight(opened):
+    """Weights, hinges, pivots, wire and spring of the opened door: nothing is left."""
+    acting = list(from_outside(opened))
+    assert opened["fwd_guide.normal_force"][-1] == opened["fwd_seal.normal_force"][-1] == 0.0
+    force = sum(f for _, f, _ in acting)
+    moment = sum(np.cross(at, f) + m for at, f, m in acting)
+    assert force == pytest.approx(np.zeros(3), abs=1e-9 * 1370)
+    assert moment == pytest.approx(np.zeros(3), abs=1e-9 * 1370)
+
+
+def test_the_opened_door(opened):
+    theirs = OTHER["opened"]
+    assert np.degrees(opened["opening"][-1]) == pytest.approx(theirs["opening"], abs=0.01)
+    assert opened["wire.force"][-1] == pytest.approx(theirs["wire"], rel=0.01)
+    assert opened["cb_rod_force"][-1] == pytest.approx(theirs["cb_rod"], rel=0.01)
+
+
+def test_men_on_the_stairs():
+    theirs = OTHER["running"]
+    for stair in (1, 6):
+        r = door("opened_man", f"parameters.stair={stair}")
+        assert r["wire.force"][-1] == pytest.approx(theirs[f"step_{stair}"], rel=0.01)
+    r = door("opened_man", "parameters.stair=6", "parameters.foot=-0.2")
+    assert r["hinge.floating_load"][-1] == pytest.approx(theirs["largest_hinge"], rel=0.01)
+    r, theirs = door("opened_men"), OTHER["three_men"]
+    assert r["wire.force"][-1] == pytest.approx(theirs["wire"], rel=0.01)
+    assert r["hinge.locating_load"][-1] == pytest.approx(theirs["hinge_fwd"], rel=0.01)
+    assert r["hinge.floating_load"][-1] == pytest.approx(theirs["hinge_aft"], rel=0.01)
+
+
+@pytest.fixture(scope="module")
+def jettison():
+    return door("jettison", "solver.tolerance=1e-7")
+
+
+def test_jettison(jettison):
+    theirs, rows = OTHER["jettison"], jettison["opening"] < np.radians(113.0)
+    rate = jettison["opening.rate"][rows]
+    assert rate.max() == pytest.approx(theirs["largest_rate"], rel=0.01)
+    at = np.degrees(jettison["opening"][rows][rate.argmax()])
+    assert at == pytest.approx(theirs["at"], abs=1.5)
+    assert rate[-1] == pytest.approx(theirs["rate_at_113"], rel=0.01)
+    for bearing, name in (("locating", "fwd"), ("floating", "aft")):
+        found = jettison[f"hinge.{bearing}_load"][rows].max()
+        assert found == pytest.approx(theirs[f"hinge_{name}"], rel=0.01)
+
+
+def test_the_hinges_let_go_without_a_jump(jettison):
+    """No velocity changes as they do: it goes on as smoothly as it came, under the same loads."""
+    free = jettison["opening"] > np.radians(113.0)
+    k = int(np.flatnonzero(free)[0])
+    t, v = jettison.t, jettison["door.velocity"]
+    rates = np.abs(np.diff(v, axis=0)).max(axis=1) / np.diff(t)
+    assert rates[k - 1] < 2.0 * rates[k - 4 : k - 1].max()
+    assert (jettison["hinge.locating_load"][k:] == 0.0).all()
+    assert jettison["hinge.locating_load"][k - 1] > 100.0
+
+
+def test_first_contact_and_the_gap():
+    """The roller meets the guide 5 deg of the latch earlier with a gap of 1.3 mm at Stop1."""
+    met = {}
+    for gap in ("0", "0.0013"):
+        r = door("lifting_path", f"parameters.stop1_gap={gap}", "solver.end=5", "output.every=0.02")
+        force = r["fwd_guide.normal_force"]
+        met[gap] = np.degrees(r["latch_angle"][np.flatnonzero(force > 0.0)[0]])
+        assert (r["wire.force"] == 0.0).all() and (r["fwd_landing.normal_force"] == 0.0).all()
+        if gap == "0":
+            stop1 = r["fwd_stop1.normal_force"].max()
+            assert stop1 == pytest.approx(OTHER["lifting"]["stop1"], rel=0.02)
+    assert met["0"] == pytest.approx(28.0, abs=0.5)
+    assert met["0"] - met["0.0013"] == pytest.approx(5.0, abs=0.5)
+
+
+def test_wind_from_below_lifts_it_off_the_wire():
+    r = door("opened_slack")
+    assert r.outcome.status == "slack" and "wire" in r.outcome.reason
+    assert r["wire.force"].min() >= -1e-9
