@@ -115,7 +115,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def runs(folder):
-    return Runs(folder)
+    return Runs(folder, STUDY.grids)
 
 
 @pytest.fixture(scope="module")

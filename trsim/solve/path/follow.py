@@ -36,6 +36,7 @@ ASTRAY = 0.5  # of what a step moves: how far from its tangent a place is found
 BESIDE = 1e-6  # of the mechanism's size: the same, however long the step is
 SHORTEST = 1e-12  # of the path: a step
 SAME = 1e-13  # of the path: where a change is, and whether it has been reached
+STEADY = 0.2  # of the time between rows: places that are nearer do not tell what inertia would do
 FIRST = 1e-4  # of the time between rows: how far ahead the direction of the start is taken
 SURE = 100.0  # times what full sliding takes, or further
 MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
@@ -281,6 +282,9 @@ class Path:
         row = round(place.t / self.every)
         at_row = row >= self.next_row and abs(place.t - row * self.every) <= SAME * self.end
         out = self.results.keep(place, a, at_row)
+        if at_row:  # between rows a path may have a corner, or an end at which it has no speed
+            steady = slope(self.before, place, after, STEADY * self.every)
+            self.results.inertia(place, steady)
         self.results.touching(place, out, self.looks.closed)
         if at_row:
             self.next_row = row + 1

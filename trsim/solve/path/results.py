@@ -133,7 +133,6 @@ class Results:
             values = np.array([*out, *squares])
             further = x * values > x * self.peak[k]
             self.peak[k, further], self.peak[k + 1, further] = values[further], place.t
-        self.inertia(place, a)
         if row or not self.rows:
             self.rows.append(np.concatenate([[place.t], out]))
         return out

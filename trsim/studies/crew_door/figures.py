@@ -9,11 +9,13 @@ import numpy as np
 from trsim.report.display import Shown
 from trsim.report.style import colour, panels, thinned
 from trsim.studies.claim import Cases
+from trsim.studies.crew_door import side_view
 from trsim.studies.drawing import Drawn, alike, lettered, with_legend
 
 LATCH, HINGE = "latch_angle", "opening"
 X_LABELS = {LATCH: "latch shaft (deg)", HINGE: "hinge (deg)"}
 LEVER = {"inner": 0.30, "outer": 0.25, "jettison": 0.25}  # m, of the handles
+RELEASED = 113.0  # deg of the hinge, where it lets go in jettison
 FEET = (("fwd", "-200mm"), ("mid", "0mm"), ("aft", "200mm"))
 STAIRS = range(1, 7)
 BOTH = (("motion", ""), ("static path", "path"))
@@ -35,21 +37,24 @@ class Panel(NamedTuple):
     curves: tuple[Curve, ...]
 
 
-def over(shown: list[Shown], x: str, of: Sequence[Panel]) -> Any:
-    """A panel below the other, each with its curves of all runs over a place.
+def over(shown: list[Shown], x: str, of: Sequence[Panel], most: float = np.inf) -> Any:
+    """A panel below the other, each with its curves of all runs over a place, up to `most` of it.
 
-    A run keeps its colour; of several curves of one run each has a dash of its own.
+    A run keeps its colour; of several curves of one run each has a dash of its own.  A static path
+    is a thin black line over the motion.
     """
     figure, axes = panels(len(of), 1, height=2.3, width=6.8)
     for a, panel, letter in zip(axes[:, 0], of, "abcdef", strict=False):
         for k, one in enumerate(shown):
-            place = one.values(x)
+            place, path = one.values(x), one.run.group("solver")["method"] == "static_path"
+            kept = place <= most
+            style = {"color": "black", "lw": 0.6} if path else {"color": colour(k), "lw": 1.3}
             for dash, curve in zip(("-", "--", ":"), panel.curves, strict=False):
                 if not one.has(curve.channel):
                     continue
-                y = curve.factor * one.run.channel(curve.channel)
+                y = curve.factor * one.run.channel(curve.channel)[kept]
                 label = ", ".join(text for text in (one.label, curve.label) if text)
-                a.plot(*thinned(place, y), dash, color=colour(k), label=label, lw=0.9)
+                a.plot(*thinned(place[kept], y), dash, label=label, **style)
         a.set_ylabel(panel.quantity)
         a.margins(x=0.01)
         lettered(a, letter if len(of) > 1 else "", panel.title)
@@ -170,7 +175,8 @@ def latch(number: str, caption: str, cases: Cases, *of: Panel) -> Drawn:
 
 
 def hinge(number: str, caption: str, cases: Cases, *of: Panel) -> Drawn:
-    return Drawn(number, "abcdef"[: len(of)], caption, cases, partial(over, x=HINGE, of=of))
+    drawn = partial(over, x=HINGE, of=of, most=RELEASED)
+    return Drawn(number, "abcdef"[: len(of)], caption, cases, drawn)
 
 
 def lifted(case: str) -> Cases:
@@ -178,6 +184,7 @@ def lifted(case: str) -> Cases:
 
 
 FIGURES: tuple[Drawn, ...] = (
+    side_view.FIGURE,
     latch("23", "Load at the inner handle over the latch, without overpressure.", LIFT_INNER,
           handle_load("inner")),
     latch("24", "The same with a gap of 1.3 mm at Stop1, and the forces at Stop1 and guide.",
