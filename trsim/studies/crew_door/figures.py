@@ -41,12 +41,13 @@ def over(shown: list[Shown], x: str, of: Sequence[Panel], most: float = np.inf) 
     """A panel below the other, each with its curves of all runs over a place, up to `most` of it.
 
     A run keeps its colour; of several curves of one run each has a dash of its own.  A static path
-    is a thin black line over the motion.
+    beside a motion is a thin black line over it.
     """
+    still = [one.run.group("solver")["method"] == "static_path" for one in shown]
     figure, axes = panels(len(of), 1, height=2.3, width=6.8)
     for a, panel, letter in zip(axes[:, 0], of, "abcdef", strict=False):
         for k, one in enumerate(shown):
-            place, path = one.values(x), one.run.group("solver")["method"] == "static_path"
+            place, path = one.values(x), still[k] and not all(still)
             kept = place <= most
             style = {"color": "black", "lw": 0.6} if path else {"color": colour(k), "lw": 1.3}
             for dash, curve in zip(("-", "--", ":"), panel.curves, strict=False):
@@ -167,6 +168,7 @@ SECTION = Panel("latch shaft at a bolt hole", "bending moment (N m)",
                 (Curve("latch_section.bending", ""),))  # fmt: skip
 LET_GO = (("driven", "lift_inner"), ("let go at the change of sign", "let_go"),
           ("let go at 80 deg", "let_go_late"))  # fmt: skip
+GUIDE_FORWARD = Panel("upper guide, forward", "force (N)", (Curve("fwd_guide.normal_force", ""),))
 COUNTER = (rod("cb_rod_force", "rod of the counterbalance"),)
 
 
@@ -192,7 +194,7 @@ FIGURES: tuple[Drawn, ...] = (
     latch("27", "Forces at Stop1 and upper guide, without overpressure.", LIFT_INNER, *CONTACTS),
     latch("28", "Load at the inner handle, with overpressure.", PRESSED, handle_load("inner")),
     latch("29", "Forces at Stop1 and upper guide, with overpressure.", PRESSED, *CONTACTS),
-    latch("30", "The handle is let go.", LET_GO, handle_load("inner"), CONTACTS[1]),
+    latch("30", "The handle is let go.", LET_GO, handle_load("inner"), GUIDE_FORWARD),
     latch("31", "Gearbox jammed, 1334 N at the outer handle.", jammed("jam_gearbox_outer"),
           rod("P7P10", "rod P7P10")),
     latch("32", "Outer handle jammed, 1334 N at the inner handle.",

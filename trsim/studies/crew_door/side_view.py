@@ -55,7 +55,7 @@ STATES = (("closed and locked", 0, 0.0), ("lifted, before it opens", 1, 0.0),
 def figure(shown: list[Shown]) -> Any:
     """Side views, seen from aft: outboard is on the left."""
     moves = [motion(one.run) for one in shown]
-    drawn, axes = panels(2, 2, height=3.4, width=6.8)
+    drawn, axes = panels(2, 2, height=3.1, width=6.8)
     for a, (text, of, share), letter in zip(axes.flat, STATES, "abcd", strict=True):
         k = round(share * (len(shown[of].run.time) - 1))
         view(a, moves[of], k)
@@ -94,8 +94,8 @@ def view(axes: Any, moved: Motion, k: int) -> None:
         y, z = world([at])[0, 1:]
         axes.plot(y, z, "^", ms=4, color=GROUND)
     axes.set_aspect("equal")
-    axes.set_xlim(-2.15, 0.85)
-    axes.set_ylim(-0.65, 2.15)
+    axes.set_xlim(-2.15, 0.75)
+    axes.set_ylim(-0.95, 1.95)
     axes.set_xlabel("outboard   y (m)   inboard")
     axes.set_ylabel("z (m)")
 

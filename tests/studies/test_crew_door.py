@@ -1,0 +1,130 @@
+"""The page of the crew door: what it speaks of is there, and what it says follows from the runs."""
+
+import csv
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from tests.sweep.test_go import here
+from trsim.studies import STUDIES, load
+from trsim.studies.crew_door import STUDY, checks
+from trsim.studies.crew_door.side_view import LEAN, world
+from trsim.studies.numbers import number, word
+from trsim.studies.runs import Runs
+from trsim.studies.single import apart_by, bounded, differ, other_signs
+from trsim.studies.study import paper
+from trsim.sweep.go import go
+from trsim.sweep.plan import plan
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+
+
+def one(*values):
+    return np.array(values)[:, None]
+
+
+@pytest.mark.parametrize(
+    ("rule", "yes", "no"),
+    [
+        (bounded(1.0, 2.0, ""), (1.0, 2.0), (1.5, 2.1)),
+        (apart_by(1.0, 2.0, 1.0, "N"), (3.0, -4.5), (3.0, 2.0)),
+        (differ(1.0, "N"), (3.0, 1.5), (3.0, 3.5)),
+        (other_signs(), (3.0, -0.1), (3.0, 0.1)),
+    ],
+)
+def test_rules(rule, yes, no):
+    assert rule.judge(one(*yes)).verdict == "confirmed"
+    assert rule.judge(one(*no)).verdict == "contradicted"
+
+
+def test_every_study_has_a_word():
+    assert {load(name).title for name in STUDIES} and load("crew-door") is STUDY
+
+
+def test_statements_and_figures_are_of_cases_that_are_run():
+    cases = yaml.safe_load((SCENARIOS / "crew_door/door.yaml").read_text())["cases"]
+    assert {name.partition(",")[0] for name in STUDY.cases} <= {*cases}
+    assert {case for tight in checks.TIGHT for case in tight[:2]} <= {*cases}
+    for claim in STUDY.claims:
+        assert claim.section in STUDY.sections
+        for reading in claim.readings:
+            for series in reading.series:
+                word(series.word)
+    keys = [claim.key for claim in STUDY.claims]
+    assert len({*keys}) == len(keys)
+    numbers = [figure.number for figure in STUDY.figures]
+    assert len({*numbers}) == len(numbers)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The opened door alone, and a little of the lifting: a study with most of it missing."""
+    place = tmp_path_factory.mktemp("door") / "scenarios"
+    shutil.copytree(SCENARIOS / "crew_door", place)
+    whole = yaml.safe_load((place / "door.yaml").read_text())
+    kept = {name: whole["cases"][name] for name in ("opened", "three_men", "wind_60kt", "running")}
+    kept["running"]["sweep"] = {"parameters.foot": ["0 mm"], "parameters.stair": [1, 2, 3, 4, 5, 6]}
+    for name, gap in (("path_inner", "0 mm"), ("path_inner_gap", "1.3 mm")):
+        kept[name] = {
+            "extends": "lifting_path.yaml",
+            "solver": {"end": "4.2 s"},
+            "output": {"every": "0.1 s"},
+            "parameters": {"stop1_gap": gap},
+        }
+    text = {"output": whole["output"], "cases": kept}
+    (place / "short.yaml").write_text(yaml.safe_dump(text, sort_keys=False))
+    list(go(plan(str(place / "short.yaml"), (), "one"), place.parent / "study", "one", here))
+    return place.parent / "study"
+
+
+@pytest.fixture(scope="module")
+def page(folder, tmp_path_factory):
+    made = tmp_path_factory.mktemp("page")
+    wanted = [one for one in STUDY.figures if one.number in ("36", "23")]
+    written = {path.name for path in paper(STUDY, folder, made, figures=wanted)}
+    assert written == {"index.html", "claims.csv", "numbers.csv", "cases.csv", "critical.csv"}
+    return made
+
+
+def rows(path):
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_what_was_run_is_judged(page):
+    verdicts = {(r["claim"], r["reading"]): r["verdict"] for r in rows(page / "claims.csv")}
+    assert verdicts["wire", ""] == verdicts["rod_idle", "one man running"] == "confirmed"
+    assert verdicts["gap_angle", "static path"] == "confirmed"
+    assert verdicts["inertia", ""] == "undetermined"  # not run here
+    text = (page / "index.html").read_text()
+    for part in ("Critical values over all cases", "How every case ended", "not run: "):
+        assert part in text
+
+
+def test_numbers_are_those_of_the_runs(folder, page):
+    runs = Runs(folder, STUDY.grids, STUDY.book)
+    path = runs.stated("path_inner")
+    latch, guide = path.channel("latch_angle"), path.channel("fwd_guide.normal_force")
+    first = number(path, "begins:fwd_guide.normal_force@latch_angle=0.01..1.9")
+    assert first.unit == "rad"
+    assert first.value == latch[np.flatnonzero(guide > 1.0)[0]]
+    assert np.isnan(number(path, "begins:wire.force@latch_angle=0..2").value)
+    force = path.channel("handle.force")
+    turned = number(path, "turns:handle.force@latch_angle=0.5..1.9").value
+    assert np.isnan(turned) and (force[latch > 0.5] > 0.0).all()
+    assert number(path, "status:limit").value == 0.0 and number(path, "status:done").value == 1.0
+    men = {r["quantity"]: r for r in rows(page / "critical.csv") if r["extreme"] == "largest"}
+    assert men["wire.force"]["case"] == "three_men"
+    assert float(men["wire.force"]["value"]) == pytest.approx(
+        runs.stated("three_men").channel("wire.force").max(), rel=1e-9
+    )
+    ended = {r["case"]: r for r in rows(page / "cases.csv")}
+    assert ended["opened"]["status"] == "done" and len(ended) == 11
+
+
+def test_the_side_view_leans_as_the_door_does():
+    top = world([(0.0, 2.0)])[0]
+    assert np.arctan2(-top[1], top[2]) == pytest.approx(LEAN)
