@@ -1,8 +1,13 @@
 """What all tests share."""
 
 import compileall
+import os
 import sys
 from pathlib import Path
+
+# as the command does, before numpy is imported: workers side by side would share the processors
+# with threads of BLAS that wait by turning, and small matrices gain nothing from them
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from hypothesis import settings
 

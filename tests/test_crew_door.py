@@ -8,6 +8,7 @@ import pytest
 
 from trsim.assemble.assemble import assemble
 from trsim.scenario.load import load
+from trsim.solve.sizing import sized
 
 from .runs import run
 
@@ -150,3 +151,73 @@ def test_wind_from_below_lifts_it_off_the_wire():
     r = door("opened_slack")
     assert r.outcome.status == "slack" and "wire" in r.outcome.reason
     assert r["wire.force"].min() >= -1e-9
+
+
+@pytest.mark.parametrize(
+    ("name", "hand", "rod", "theirs"),
+    [
+        ("jam_gearbox", 1334, "P7P10", OTHER["jams"]["P7P10_inner"]),
+        ("jam_gearbox", -1334, "P7P10", -OTHER["jams"]["P7P10_inner"]),
+        ("jam_gearbox_outer", 1334, "P7P10", OTHER["jams"]["P7P10_outer"]),
+        ("jam_outer", 1334, "P2P6", OTHER["jams"]["P2P6_least"]),
+        ("jam_outer", -1334, "P2P6", OTHER["jams"]["P2P6_most"]),
+    ],
+)
+def test_jams(name, hand, rod, theirs):
+    """At the first angle of the latch, where the rods carry most; what is jammed stays."""
+    r = door(name, f"parameters.hand={hand}", "solver.end=0.01", "output.every=0.01")
+    assert r[rod][0] == pytest.approx(theirs, rel=0.03)
+    held = "outer_angle" if name == "jam_outer" else "gearbox_angle"
+    assert abs(r[held][0]) < 1e-9
+    idle = r["P2P6"][0]
+    assert (name != "jam_gearbox") or abs(idle) < 0.01 * abs(hand) * 5
+
+
+def test_the_latch_at_its_bolt_hole(opened):
+    """Force and moment of the section against all that acts on the shaft beyond it, at rest."""
+    r, turn = opened, opened["opening"][-1]
+    door_axes = LEAN @ about_x(turn)
+    latch = door_axes @ about_x(-r["latch_angle"][-1])
+    p = np.array([0.05, -0.04, 0.62])
+
+    def at(place):
+        """From the station to a place of the shaft as drawn, in the world."""
+        return latch @ (np.array(place) - p)
+
+    acting = [
+        (at([0.30, -0.04, 0.62]), r["latch_bearings.floating_force"][-1]),
+        (at([0.12, -0.04, 0.682]), -r["crank_pin.reaction"][-1]),
+        (at([0.16, -0.04, 0.63]), np.array([0, 0, -3 * 9.81])),
+    ]
+    force = -sum(f for _, f in acting)
+    moment = -sum(np.cross(arm, f) for arm, f in acting)
+    # components along y and z of the shaft, and x: the normal of the section
+    axes = latch @ np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]])  # columns y, z, x as drawn
+    assert r["latch_section.force"][-1] == pytest.approx(axes.T @ force, abs=1e-6)
+    assert r["latch_section.moment"][-1] == pytest.approx(axes.T @ moment, abs=1e-6)
+    assert r["latch_section.bending"][-1] > 10.0
+
+
+def test_the_handle_is_let_go_where_its_force_changes_its_sign():
+    """Found, not given; without friction of the seals the door goes on by itself, with it not."""
+    smooth = ("templates.side.forces.seal.friction=0", "forces.bavett.friction=0")
+    ends = {}
+    for name, sets in (("stays", ()), ("goes on", smooth)):
+        r = door("let_go", "output.every=0.05", *sets)
+        force, latch = r["handle.force"], np.degrees(r["latch_angle"])
+        free = np.flatnonzero((latch > 30.0) & (force == 0.0))[0]
+        before = force[free - 1]
+        assert 0.0 <= before < 1.0 and (force[free:] == 0.0).all()
+        ends[name] = r.outcome.status, latch[free], latch[-1]
+    status, gone, last = ends["stays"]
+    assert status == "stalled" and gone == pytest.approx(OTHER["lifting"]["negative_at"], abs=1.0)
+    assert last < 80.0
+    assert ends["goes on"][0] == "done" and ends["goes on"][2] > 92.0
+
+
+def test_the_hand_takes_over_from_the_drive():
+    """Until the roller is on the guide the load put back leaves less than 1e-6 of the torque."""
+    sizes = ("solver.end=3.4", "output.every=0.2")
+    scenario = load(DOOR / "sizing.yaml", list(sizes))
+    found = sized(scenario)
+    assert found.relative[0] == 1.0 and found.relative[-1] < 1e-6

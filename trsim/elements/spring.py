@@ -96,6 +96,8 @@ def energy(t, scene, e):
 def measure(t, scene, e, o):
     own = Own(scene, e)
     T, elastic = tension(t, scene, e)
+    if own.pulls == 1:  # where it becomes slack rounding may leave less than nothing
+        T = max(T, 0.0)
     scene.out[o], scene.out[o + 1] = T, elastic
     scene.out[o + 2] = scene.S[own.coordinate, 0] + own.free_length
 
