@@ -234,6 +234,16 @@ def twist(F, i, m):
 
 
 @internal
+def impulse(blow, k, p_i, p_j, f):
+    """Row k of what an impact acts with: the impulse f on body j at the end of the arm p_j, and -f
+    on body i at that of p_i; see `strike` of contract.py."""
+    m_i, m_j = cross(p_i, f), cross(p_j, f)
+    for c in range(3):
+        blow[k, c], blow[k, 3 + c] = f[c], m_j[c]
+        blow[k, 6 + c], blow[k, 9 + c] = -f[c], -m_i[c]
+
+
+@internal
 def separation(X, i, p_i, j, p_j):
     """From the point on i to the point on j, world axes."""
     return (

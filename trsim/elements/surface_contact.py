@@ -45,6 +45,7 @@ from trsim.elements.frames import (
     carried,
     cross,
     dot,
+    impulse,
     minus,
     plus,
     points,
@@ -73,6 +74,7 @@ from trsim.laws.friction import (
 from trsim.laws.surfaces import PLANE, PROFILE, SPHERE, away, beside
 
 CORNERED = CODES["modified_coulomb"]
+PARALLEL = 0.9  # a cosine: nearer to a line directions span no plane well
 DEEP = 0.2  # of the radius of a ball: deeper than that it is no longer one that touches a surface
 
 
@@ -169,6 +171,7 @@ def pack(name, spec, at):
         state,
         law.friction.slope,
         jump,
+        impact=law.impact,
     )
     states = () if state < 0 else (state, state + 1)
     return Row(*own, contact, states=states, travel="surface")
@@ -319,6 +322,21 @@ def gap(t, scene, e):
 
 
 @kernel
+def strike(t, scene, e):
+    blow, own = scene.blow, Own(scene, e)
+    c_i, c_j, n, _, _, _, _ = slides(scene, e)
+    # across n: along the profile and z, or any two directions
+    a = arm(scene.X, own.i, own.a_i)
+    if abs(dot(a, n)) > PARALLEL:
+        a = arm(scene.X, own.i, own.u_i)
+    t_1 = cross(n, a)
+    t_1 = scaled(1.0 / sqrt(dot(t_1, t_1)), t_1)
+    impulse(blow, 0, c_i, c_j, n)
+    impulse(blow, 1, c_i, c_j, t_1)
+    impulse(blow, 2, c_i, c_j, cross(n, t_1))
+
+
+@kernel
 def corners(t, scene, e):
     out, own = scene.corner, Own(scene, e)
     out[e, 0] = -1.0
@@ -429,6 +447,7 @@ ELEMENT = Element(
     kernels={
         "force": force,
         "gaps": gap,
+        "strike": strike,
         "corners": corners,
         "energy": energy,
         "measure": measure,

@@ -4,6 +4,9 @@ stiffness: internal    Hertz, journal in bearing    K = 4/(3 (s_i + s_j)) sqrt(R
            paper       the same with R_i + R_j
            cylinder    line contact over `width`
            a number    K in N/m^1.5                 s = (1 - nu^2)/E
+
+Laws of instantaneous impacts (laws/impact.py) rest on the same stiffness, with the damping of
+Hunt and Crossley for a restitution of 0 at the slowest impact.
 """
 
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
@@ -11,10 +14,12 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 from annotated_types import Ge, Gt, Interval
 from pydantic import model_validator
 
+from trsim.elements.contract import Impact
 from trsim.elements.friction_law import Friction
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
 from trsim.laws.contact import ball_stiffness, cylinder_stiffness, damping_factor, hertz_stiffness
+from trsim.laws.impact import RULES
 
 Modulus = Annotated[float, Gt(0), Unit("Pa")]
 Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
@@ -31,6 +36,7 @@ STIFFNESS_NEEDS = {
 # what a law of the normal force cannot do without, and what is of no use to it
 NORMAL_NEEDS = {"impact": ("damping", "ramp")}
 NOT_OF = {"impact": ("restitution",)}
+RESTING = "hunt_crossley"  # of newton and poisson: how what no longer bounces comes to rest
 
 
 class Normal(NamedTuple):
@@ -64,12 +70,16 @@ class ContactLaw(Spec):
     restitution             speed after an impact over speed before; of all laws but impact
     damping                 of impact, where its ramp is over
     ramp                    of impact: penetration over which the damping fades in
-    slowest_impact          floor of the remembered impact speed
+    slowest_impact          floor of the remembered impact speed; of newton and poisson the approach
+                            below which nothing bounces
     friction                along the surfaces
     """
 
     type: ClassVar[str] = "contact_law"
-    normal: Literal["lankarani_nikravesh", "hunt_crossley", "flores", "identified", "impact"]
+    normal: Literal[
+        *("lankarani_nikravesh", "hunt_crossley", "flores", "identified", "impact"),
+        *("newton", "poisson"),
+    ]
     stiffness: Annotated[
         Literal["internal", "paper", "cylinder", "hertz"] | Annotated[float, Gt(0)], Unit("N/m^1.5")
     ] = "internal"
@@ -102,6 +112,19 @@ class ContactLaw(Spec):
         nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
         return (E_i, nu_i), (self.journal_youngs_modulus or E_i, nu_j)
 
+    @property
+    def impact(self) -> Impact | None:
+        """What a touch is that takes no time; None of laws of a force."""
+        if self.normal not in RULES or self.restitution is None:
+            return None
+        return Impact(self.normal, self.restitution, *self.friction.coefficients)
+
+    @property
+    def chi(self) -> float:
+        """The damping factor of a law with a restitution."""
+        law, e = (RESTING, 0.0) if self.normal in RULES else (self.normal, self.restitution)
+        return damping_factor(law, e)
+
     def on_surface(self, radius: float, curvature: float | None) -> Normal:
         """The numbers of a ball on a surface; curvature: as of `ball_stiffness`, None where it is
         not the same in all directions."""
@@ -117,7 +140,7 @@ class ContactLaw(Spec):
             K, exponent = ball_stiffness(radius, curvature, *self.materials), 1.5
         if self.normal == "impact":
             return Normal(K, exponent, 0.0, float(self.damping or 0.0), float(self.ramp or 0.0))
-        return Normal(K, exponent, damping_factor(self.normal, self.restitution), 0.0, 0.0)
+        return Normal(K, exponent, self.chi, 0.0, 0.0)
 
     def normal_numbers(self, c: float) -> tuple[float, float, int, float, float]:
         """K, exponent, form, chi of the law; and the Hertz stiffness it has at a light touch.
@@ -127,8 +150,12 @@ class ContactLaw(Spec):
         if self.normal == "impact":
             what = "normal impact is no law of a clearance joint"
             raise ScenarioError(what, "take one with a restitution", ("contact",))
+        if self.impact:
+            what = f"normal {self.normal} makes impacts, and no forces, of the touches of a journal"
+            hint = "its forces are what play is about: take one of them, as `identified`"
+            raise ScenarioError(what, hint, ("contact",))
         bearing, journal = self.materials
-        chi = damping_factor(self.normal, self.restitution)
+        chi = self.chi
         if self.stiffness == "hertz":
             what = "stiffness hertz is that of a ball on a surface"
             raise ScenarioError(what, "of a journal in its bearing take `internal`", ("contact",))
