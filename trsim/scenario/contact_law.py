@@ -7,6 +7,10 @@ stiffness: internal    Hertz, journal in bearing    K = 4/(3 (s_i + s_j)) sqrt(R
 
 Laws of instantaneous impacts (laws/impact.py) rest on the same stiffness, with the damping of
 Hunt and Crossley for a restitution of 0 at the slowest impact.
+
+pair: steel-rubber     moduli, friction and, where one is known, restitution of two materials; with
+                       it stiffness is `hertz` unless given, and friction modified_coulomb with
+                       v0 = 0 and v1 = 1 mm/s
 """
 
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
@@ -20,6 +24,9 @@ from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
 from trsim.laws.contact import ball_stiffness, cylinder_stiffness, damping_factor, hertz_stiffness
 from trsim.laws.impact import RULES
+from trsim.scenario.pairs import PAIRS, listed, values, with_pair
+
+__doc__ = f"{__doc__}\n{listed()}\n"  # what `explain` prints
 
 Modulus = Annotated[float, Gt(0), Unit("Pa")]
 Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
@@ -58,6 +65,7 @@ def _needs(spec: Any, what: str, keys: tuple[str, ...]) -> None:
 class ContactLaw(Spec):
     """The law of a contact between two bodies of given material and size.
 
+    pair                    two materials, for what is not given; the first is that of the surface
     normal                  how force depends on penetration and its rate
     stiffness               a word that computes it from size and material, or the number
     exponent                of the penetration
@@ -76,6 +84,7 @@ class ContactLaw(Spec):
     """
 
     type: ClassVar[str] = "contact_law"
+    pair: Literal[*PAIRS] | None = None
     normal: Literal[
         *("lankarani_nikravesh", "hunt_crossley", "flores", "identified", "impact"),
         *("newton", "poisson"),
@@ -96,10 +105,21 @@ class ContactLaw(Spec):
     slowest_impact: Speed = 0.01
     friction: Friction = Friction()
 
+    @model_validator(mode="before")
+    @classmethod
+    def of_pair(cls, data: Any) -> Any:
+        """What is not given is that of the pair."""
+        known = isinstance(data, dict) and data.get("pair") in PAIRS
+        return with_pair(data) if known else data
+
     @model_validator(mode="after")
     def complete(self) -> "ContactLaw":
         _needs(self, f"stiffness {self.stiffness}", STIFFNESS_NEEDS.get(str(self.stiffness), ()))
-        _needs(self, f"normal {self.normal}", NORMAL_NEEDS.get(self.normal, ("restitution",)))
+        needed = NORMAL_NEEDS.get(self.normal, ("restitution",))
+        if self.pair and "restitution" in needed and self.restitution is None:
+            what = f"no origin is known for a restitution of {self.pair}"
+            raise ScenarioError(what, "give `restitution`, or take normal impact", ("pair",))
+        _needs(self, f"normal {self.normal}", needed)
         for key in NOT_OF.get(self.normal, ("damping", "ramp")):
             if getattr(self, key) is not None:
                 raise ScenarioError(f"{key} is no number of normal {self.normal}", "", (key,))
@@ -111,6 +131,19 @@ class ContactLaw(Spec):
         E_i, nu_i = self.youngs_modulus, self.poisson
         nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
         return (E_i, nu_i), (self.journal_youngs_modulus or E_i, nu_j)
+
+    @property
+    def taken(self) -> str:
+        """What is as the table of pairs has it, with origins; empty without a pair."""
+        if self.pair is None:
+            return ""
+        told = []
+        for key, value in values(PAIRS[self.pair]).items():
+            of, name = (self.friction, key[9:]) if "." in key else (self, key)
+            unused = key == "friction.static_coefficient" and self.friction.law != "sticking"
+            if getattr(of, name) == value.number and not unused:
+                told.append(f"{key} {value.number:g} ({value.from_where})")
+        return f"{self.pair}: {'; '.join(told) or 'nothing'}"
 
     @property
     def impact(self) -> Impact | None:
