@@ -182,6 +182,7 @@ class Contact(NamedTuple):
     jump: int = -1  # column of par with the coefficient of a friction that jumps at rest
     radius: float = 0.0  # m, of the bearing of a journal
     impact: Impact | None = None
+    known_to: float = inf  # m, the depth to which its law is given
 
 
 class ContactNumbers(Columns, par="contact_par"):

@@ -4,6 +4,7 @@ stiffness: internal    Hertz, journal in bearing    K = 4/(3 (s_i + s_j)) sqrt(R
            paper       the same with R_i + R_j
            cylinder    line contact over `width`
            a number    K in N/m^1.5                 s = (1 - nu^2)/E
+           table       by points, `table`, with the damping of `normal`; of a ball on a surface
 
 Laws of instantaneous impacts (laws/impact.py) rest on the same stiffness, with the damping of
 Hunt and Crossley for a restitution of 0 at the slowest impact.
@@ -23,6 +24,7 @@ from trsim.elements.friction_law import Friction
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
 from trsim.laws.contact import ball_stiffness, cylinder_stiffness, damping_factor, hertz_stiffness
+from trsim.laws.force_tables import rising
 from trsim.laws.impact import RULES
 from trsim.scenario.pairs import PAIRS, listed, values, with_pair
 
@@ -31,6 +33,7 @@ __doc__ = f"{__doc__}\n{listed()}\n"  # what `explain` prints
 Modulus = Annotated[float, Gt(0), Unit("Pa")]
 Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
 Length = Annotated[float, Gt(0), Unit("m")]
+Point = tuple[Annotated[float, Unit("m")], Annotated[float, Unit("N")]]
 Speed = Annotated[float, Gt(0), Unit("m/s")]
 
 # what a word cannot do without
@@ -39,6 +42,7 @@ STIFFNESS_NEEDS = {
     "paper": ("bearing_radius", "youngs_modulus", "poisson"),
     "cylinder": ("bearing_radius", "width", "youngs_modulus", "poisson"),
     "hertz": ("youngs_modulus", "poisson"),
+    "table": ("table",),
 }
 # what a law of the normal force cannot do without, and what is of no use to it
 NORMAL_NEEDS = {"impact": ("damping", "ramp")}
@@ -69,6 +73,7 @@ class ContactLaw(Spec):
     normal                  how force depends on penetration and its rate
     stiffness               a word that computes it from size and material, or the number
     exponent                of the penetration
+    table                   rows [penetration, force] of stiffness table, both rising from [0, 0] on
     bearing_radius          radius of the bearing, and lever of the friction
     width                   length of a line contact
     youngs_modulus          of the bearing, and of the journal unless given
@@ -90,9 +95,11 @@ class ContactLaw(Spec):
         *("newton", "poisson"),
     ]
     stiffness: Annotated[
-        Literal["internal", "paper", "cylinder", "hertz"] | Annotated[float, Gt(0)], Unit("N/m^1.5")
+        Literal["internal", "paper", "cylinder", "hertz", "table"] | Annotated[float, Gt(0)],
+        Unit("N/m^1.5"),
     ] = "internal"
     exponent: Annotated[float, Interval(ge=1, le=3), Unit("-")] = 1.5
+    table: tuple[Point, ...] | None = None
     bearing_radius: Length | None = None
     width: Length | None = None
     youngs_modulus: Modulus | None = None
@@ -123,7 +130,26 @@ class ContactLaw(Spec):
         for key in NOT_OF.get(self.normal, ("damping", "ramp")):
             if getattr(self, key) is not None:
                 raise ScenarioError(f"{key} is no number of normal {self.normal}", "", (key,))
+        if self.table is not None:
+            self.check_table()
         return self
+
+    def check_table(self) -> None:
+        """Refuse a table that does not rise from nothing, or that is not what is asked for."""
+        if self.stiffness != "table":
+            what = "a table is given, and another stiffness"
+            raise ScenarioError(what, "stiffness: table", ("stiffness",))
+        try:
+            rising(*self.columns)
+        except ValueError as error:
+            hint = "in m and N unless units are given"
+            raise ScenarioError(str(error), hint, ("table",)) from None
+
+    @property
+    def columns(self) -> tuple[list[float], list[float]]:
+        """Penetrations and forces of the table."""
+        rows = self.table or ()
+        return [d for d, _ in rows], [F for _, F in rows]
 
     @property
     def materials(self) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
@@ -163,6 +189,8 @@ class ContactLaw(Spec):
         not the same in all directions."""
         if isinstance(self.stiffness, float):
             K, exponent = self.stiffness, self.exponent
+        elif self.table is not None:
+            K, exponent = rising(*self.columns)[1], 1.0
         elif self.stiffness != "hertz":
             what = f"stiffness {self.stiffness} is that of a journal in its bearing"
             raise ScenarioError(what, "give a number, or `hertz` of a ball", ("contact",))
@@ -189,8 +217,8 @@ class ContactLaw(Spec):
             raise ScenarioError(what, hint, ("contact",))
         bearing, journal = self.materials
         chi = self.chi
-        if self.stiffness == "hertz":
-            what = "stiffness hertz is that of a ball on a surface"
+        if self.stiffness in ("hertz", "table"):
+            what = f"stiffness {self.stiffness} is that of a ball on a surface"
             raise ScenarioError(what, "of a journal in its bearing take `internal`", ("contact",))
         if isinstance(self.stiffness, float):
             return self.stiffness, self.exponent, 0, chi, self.stiffness

@@ -94,7 +94,9 @@ def with_pair(given: dict[str, Any]) -> dict[str, Any]:
     filled: dict[str, Any] = {key: value.number for key, value in known.items() if "." not in key}
     if given.get("normal") == "impact":
         filled.pop("restitution", None)
-    if "bearing_radius" not in given:
+    if "table" in given:
+        filled["stiffness"] = "table"
+    elif "bearing_radius" not in given:
         filled["stiffness"] = "hertz"
     friction = given.get("friction", SMOOTHED)
     if isinstance(friction, dict) and friction.get("law", "none") != "none":
