@@ -72,6 +72,14 @@ def test_a_ball_from_rest_on_the_floor_rests():
     assert r["ball.position"][-1, 1] == pytest.approx(0.02 - deep, abs=1e-9)
 
 
+def test_what_does_not_bounce_rests_with_the_damping_of_the_slowest_impact():
+    r = run(BALL, "contact_laws.hard.restitution=0", "solver.end=0.5")
+    assert len(of(r, IMPACT)) == len(of(r, ONSET)) == 1
+    late = r.t > sqrt(2.0 * 0.5 / G) + 0.1
+    assert np.ptp(r["floor.normal_force"][late]) < 1e-3 * 0.1 * G
+    assert r["energy.work.impacts"][-1] == pytest.approx(-0.1 * G * 0.5, rel=1e-4)
+
+
 @pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha", "rk4"])
 def test_every_method_that_locates_touches_has_them(method):
     sets = [f"solver.method={method}", "solver.end=0.5"]
