@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from trsim.laws.impact import RULES, NoImpact, impact
+from trsim.laws.contact import RULES
+from trsim.laws.impact import NoImpact, impact
 
 SLANTED = 0.5, 1.2  # kg, m: mass and length of a slender rod
 

@@ -23,6 +23,7 @@ from trsim.kernels.lazy import internal
 from trsim.laws.tables import smoothstep
 
 HERTZ, CYLINDER, TABLE = 0, 1, 2  # form
+RULES = ("newton", "poisson")  # of impacts that take no time: impact.py
 
 
 class Pair(NamedTuple):

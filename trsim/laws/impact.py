@@ -28,7 +28,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Friction = tuple[float, float]  # static and kinetic coefficient
 
-RULES = ("newton", "poisson")
 STRAIGHT = 1e-12  # of its size: by as much a way turns that is straight
 NOTHING = 1e-12  # of the inverse mass along the normal: none
 AT_REST = 1e-10  # of the speed before: no sliding

@@ -23,9 +23,14 @@ from trsim.elements.contract import Impact
 from trsim.elements.friction_law import Friction
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
-from trsim.laws.contact import ball_stiffness, cylinder_stiffness, damping_factor, hertz_stiffness
+from trsim.laws.contact import (
+    RULES,
+    ball_stiffness,
+    cylinder_stiffness,
+    damping_factor,
+    hertz_stiffness,
+)
 from trsim.laws.force_tables import rising
-from trsim.laws.impact import RULES
 from trsim.scenario.pairs import PAIRS, listed, values, with_pair
 
 __doc__ = f"{__doc__}\n{listed()}\n"  # what `explain` prints
