@@ -6,7 +6,7 @@ from math import cos, sin, sqrt
 import numpy as np
 import pytest
 
-from trsim.errors import ScenarioError
+from trsim.errors import ModelError, ScenarioError
 from trsim.laws.impact import impact
 from trsim.solve.march.record import IMPACT, ONSET, SEPARATION
 
@@ -485,3 +485,106 @@ def test_lines_of_an_instant_stand_in_their_order():
     kinds = r.events[np.isin(r.events[:, KIND], (ONSET, IMPACT, SEPARATION)), KIND].tolist()
     assert kinds[:6] == [ONSET, IMPACT, SEPARATION] * 2
     assert all(a <= b for a, b in pairwise(r.events[:, TIME]))
+
+
+MEET = """
+planar: false
+bodies:
+  a: {{mass: 0.3, inertia: [2e-4, 3e-4, 4e-4], at: {a}, velocity: {v_a}, angular_velocity: {w_a}}}
+  b: {{mass: 0.1, inertia: [3e-5, 2e-5, 4e-5], at: {b}, velocity: {v_b}, angular_velocity: {w_b}}}
+forces:
+  meet: {{type: surface_contact, surface: {{body: a, shape: sphere, radius: 0.012, at: {s}}},
+         ball: {{body: b, radius: 0.008, at: {c}}}}}
+contact_laws:
+  hard: {{normal: {rule}, stiffness: 1e9, restitution: 0.6, slowest_impact: 1e-3,
+         friction: {{law: coulomb, coefficient: {mu}}}}}
+output: {{channels: ["*", "*.rotation"]}}
+solver: {{end: 0.03, tolerance: 1e-9}}
+"""
+
+
+@pytest.mark.parametrize("rule", ["newton", "poisson"])
+@pytest.mark.parametrize("mu", [0.0, 0.2, 2.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_two_bodies_in_space_keep_their_momenta(rule, mu, seed):
+    """Off their centres of mass, any way round, far from the origin; what slides is turned."""
+    rng = np.random.default_rng(seed)
+    n, far = rng.normal(size=3), 30.0 * rng.normal(size=3)
+    n /= np.linalg.norm(n)
+    s, c = far, far + 0.022 * n
+    a, b = s + 0.01 * rng.normal(size=3), c + 0.006 * rng.normal(size=3)
+    v_a, v_b = n + 0.4 * rng.normal(size=3), -n + 0.4 * rng.normal(size=3)
+    w_a, w_b = 5.0 * rng.normal(size=3), 5.0 * rng.normal(size=3)
+    given = {"a": a, "b": b, "s": s, "c": c, "v_a": v_a, "v_b": v_b, "w_a": w_a, "w_b": w_b}
+    r = run(MEET.format(rule=rule, mu=mu, **{k: v.tolist() for k, v in given.items()}))
+    assert len(of(r, IMPACT)) == 1
+    jump = {int(line[2]): line for line in r.jumps}
+    lost_momentum, lost_turn, size = np.zeros(3), np.zeros(3), 0.0
+    for f, name, m, I in ((1, "a", 0.3, (2e-4, 3e-4, 4e-4)), (2, "b", 0.1, (3e-5, 2e-5, 4e-5))):
+        before, line = np.argmax(r.t > jump[f][0]) - 1, jump[f]
+        R = r[f"{name}.rotation"][before].reshape(3, 3)
+        x = r[f"{name}.position"][before] + (line[0] - r.t[before]) * line[3:6] - far
+        p = m * (line[6:9] - line[3:6])
+        lost_momentum += p
+        w = line[12:15] - line[9:12]
+        lost_turn += np.cross(x, p) + R @ np.diag(I) @ R.T @ w
+        size = max(size, np.linalg.norm(p))
+    assert lost_momentum == pytest.approx(np.zeros(3), abs=1e-12 * 30.0)
+    assert lost_turn == pytest.approx(np.zeros(3), abs=1e-5 * size)
+    hit = of(r, IMPACT)[0]
+    if mu == 0.0:
+        assert of(r, SEPARATION)[0, SPEED] == pytest.approx(-0.6 * hit[SPEED], rel=1e-9)
+    assert r["energy.kinetic"][-1] < r["energy.kinetic"][0]
+    assert r["energy.kinetic"][-1] - r["energy.kinetic"][0] == pytest.approx(hit[WORK], rel=1e-6)
+    assert lost(r) < 1e-8
+
+
+LOOP = """
+planar: {planar}
+bodies:
+  crank: {{mass: 2, inertia: {I}, at: [0.05, 0.1, 0]}}
+  rod: {{mass: 3, inertia: {I}, at: [0.3, 0.2, 0]}}
+  arm: {{mass: 4, inertia: {I}, at: [0.55, 0.1, 0]}}
+joints:
+  O: {{type: revolute, bodies: [ground, crank], at: [0, 0, 0], axis: [0, 0, 1]}}
+  A: {{type: revolute, bodies: [crank, rod], at: [0.1, 0.2, 0], axis: [0, 0, 1]}}
+  B: {{type: revolute, bodies: [rod, arm], at: [0.5, 0.2, 0], axis: [0, 0, 1]}}
+  C: {{type: revolute, bodies: [ground, arm], at: [0.6, 0, 0], axis: [0, 0, 1]}}
+forces:
+  stop: {{type: limit_stop, joint: O, upper: 0.1, stiffness: 1e6, damping: 1e3, restitution: 0.4,
+         slowest_impact: 1e-3}}
+initial: {{O.rate: 5 rad/s}}
+solver: {{end: 0.05, tolerance: 1e-9}}
+"""
+
+
+@pytest.mark.parametrize("planar, I", [("true", 0.03), ("false", [0.01, 0.02, 0.03])])
+def test_a_loop_at_a_stop_turns_back_as_one(planar, I):
+    """All rates of a loop with one motion turn round by e, whatever rows were left out."""
+    r = run(LOOP.format(planar=planar, I=I))
+    (hit,) = of(r, IMPACT)
+    for line in r.jumps:
+        assert line[6:9] == pytest.approx(-0.4 * line[3:6], abs=1e-9)
+        assert line[12:15] == pytest.approx(-0.4 * line[9:12], abs=1e-9)
+        m = {1: 2.0, 2: 3.0, 3: 4.0}[int(line[2])]
+        on = np.sum([one[5:8] for one in r.impulses if one[3] == line[2]], axis=0)
+        assert m * (line[6:9] - line[3:6]) == pytest.approx(on, abs=1e-9)
+    energy = r["energy.kinetic"]
+    assert hit[WORK] == pytest.approx(-(1 - 0.16) * energy[0], rel=1e-6)
+    assert energy[-1] == pytest.approx(0.16 * energy[0], rel=1e-6)
+
+
+def test_no_node_of_a_flexible_bar_is_struck():
+    text = """
+bodies:
+  bar: {type: ancf_cable, start: [0, 0.5], end: [1, 0.5], section: {diameter: 20 mm},
+        density: 7800, youngs_modulus: 2e9, elements: 4}
+forces:
+  floor: {type: surface_contact, surface: {body: ground, shape: plane},
+          ball: {body: bar, at: [1, 0.5]}}
+contact_laws: {hard: {normal: newton, stiffness: 1e6, restitution: 0.5}}
+gravity: [0, -9.81, 0]
+solver: {end: 0.1}
+"""
+    with pytest.raises(ModelError, match="one node of a flexible bar"):
+        built(text)
