@@ -121,7 +121,7 @@ class ContactLaw(Spec):
     @classmethod
     def of_pair(cls, data: Any) -> Any:
         """What is not given is that of the pair."""
-        known = isinstance(data, dict) and data.get("pair") in PAIRS
+        known = isinstance(data, dict) and data.get("pair") in [*PAIRS]
         return with_pair(data) if known else data
 
     @model_validator(mode="after")
