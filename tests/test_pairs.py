@@ -99,7 +99,7 @@ solver: {end: 0.02 s}
 @pytest.mark.parametrize("given, said", [
     ("pair: steel-cheese, normal: newton", "steel-rubber"),
     ("pair: [steel], normal: newton", "steel-rubber"),
-    ("pair: steel-steel, normal: [newton], friction: {law: [coulomb]}", "coulomb"),
+    ("pair: steel-steel, normal: newton, friction: {law: [coulomb]}", "coulomb"),
     ("pair: steel-rubber, normal: newton", "no origin is known for a restitution of steel-rubber"),
 ])  # fmt: skip
 def test_what_is_not_in_the_table_is_said(given, said):
