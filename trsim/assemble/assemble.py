@@ -365,6 +365,9 @@ def build(
         contact=np.array(contacts, np.int64),
         contact_par=contact_numbers(at, instances, contacts, arms),
         contact_state=np.array([i.row.contact.state for i in instances if i.row.contact], np.int64),
+        contact_states=np.array(
+            [i.row.contact.states for i in instances if i.row.contact], np.int64
+        ),
         contact_impact=struck(at, [instances[e] for e in contacts]),
         contact_angle=np.array([eccentricity(instances[e].element) for e in contacts], np.int64),
         contact_width=np.array(

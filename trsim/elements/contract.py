@@ -177,11 +177,12 @@ class Contact(NamedTuple):
     clearance: float  # m, of a journal in its bearing; inf where the contact is none
     slowest_impact: float  # m/s
     damping: float  # chi: of the elastic force at the rate at which the contact began
-    state: int = -1  # entry of z that a touch sets to zero
+    state: int = -1  # first entry of z that a touch sets to zero
     slope: float = 0.0  # s/m, of its coefficient of friction over the speed, at rest
     jump: int = -1  # column of par with the coefficient of a friction that jumps at rest
     radius: float = 0.0  # m, of the bearing of a journal
     impact: Impact | None = None
+    states: int = 1  # how many such entries there are
     known_to: float = inf  # m, the depth to which its law is given
 
 

@@ -109,7 +109,8 @@ class Model(Packed):
     scale: A1  # (n_y) lever or magnitude that goes with it
     contact: I1  # (n_contacts) row e of each element with a gap
     contact_par: A2  # (n_contacts, 7) ContactNumbers of contract.py
-    contact_state: I1  # (n_contacts) entry of z to reset at a touch, or -1
+    contact_state: I1  # (n_contacts) first entry of z to reset at a touch, or -1
+    contact_states: I1  # (n_contacts) how many there are
     contact_width: I1  # (n_contacts) its output columns
     contact_impact: I1  # (n_contacts) 1: a touch takes no time     solve/march/impacts.py
     contact_angle: I1  # (n_contacts) among them: first of the eccentricity's two, or -1

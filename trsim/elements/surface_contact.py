@@ -173,6 +173,7 @@ def pack(name, spec, at):
         law.friction.slope,
         jump,
         impact=law.impact,
+        states=2,
         known_to=inf if law.table is None else law.table[-1][0],
     )
     states = () if state < 0 else (state, state + 1)

@@ -135,7 +135,8 @@ class _Striking:
         r.events += 1
         note_event.python(r, self.b, self.t, rec.ONSET, e, speed)
         if work.contact_state[c] >= 0:
-            r.y[work.n_q + work.n_v + work.contact_state[c]] = 0.0
+            first = work.n_q + work.n_v + int(work.contact_state[c])
+            r.y[first : first + int(work.contact_states[c])] = 0.0
 
     def solved(self, c: int, blow: Array, law: Impact, bounces: bool) -> Blow:
         """The impulses of a contact."""
