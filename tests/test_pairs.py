@@ -110,12 +110,13 @@ def test_what_is_not_in_the_table_is_said(given, said):
 
 def test_explain_prints_the_table_with_its_origins():
     [page] = explained("contact_laws")["sections"]
+    told = " ".join(page["law"].split())
     for name, pair in PAIRS.items():
-        assert name in page["law"]
-        assert pair.kinetic.from_where in page["law"]
+        assert name in told
+        assert pair.kinetic.from_where in told
     for E, nu in MATERIALS.values():
-        assert E.from_where in page["law"]
-        assert nu.from_where in page["law"]
+        assert E.from_where in told
+        assert nu.from_where in told
 
 
 def test_a_ball_rubs_by_its_pair():

@@ -4,6 +4,7 @@ They are of clean surfaces unless greasy.  Friction varies by half of itself wit
 air; measure it where it matters.  What no source here gives is not in the table.
 """
 
+from textwrap import wrap
 from typing import Any, NamedTuple
 
 ORIGINS = {
@@ -107,17 +108,22 @@ def with_pair(given: dict[str, Any]) -> dict[str, Any]:
     return {**filled, **given, **({"friction": filled["friction"]} if "friction" in filled else {})}
 
 
+def wrapped(value: Value) -> list[str]:
+    """The origin of a value in lines that fit."""
+    return wrap(value.from_where, 100, initial_indent=8 * " ", subsequent_indent=10 * " ")
+
+
 def listed() -> str:
     """The table in words, for `explain`."""
     lines = ["Pairs of materials (`pair`), of static and sliding friction:", ""]
     for name, pair in PAIRS.items():
         e = "" if pair.restitution is None else f", restitution {pair.restitution.number:g}"
         lines.append(f"    {name:19} {pair.static.number:g} {pair.kinetic.number:g}{e}")
-        lines.append(f"        {pair.kinetic.from_where}")
+        lines += wrapped(pair.kinetic)
         if pair.restitution is not None:
-            lines.append(f"        {pair.restitution.from_where}")
+            lines += wrapped(pair.restitution)
     lines += ["", "Young's modulus and Poisson's ratio of materials:", ""]
     for name, (E, nu) in MATERIALS.items():
         lines.append(f"    {name:19} {E.number / 1e9:g} GPa, {nu.number:g}")
-        lines += [f"        {text}" for text in dict.fromkeys((E.from_where, nu.from_where))]
+        lines += dict.fromkeys((*wrapped(E), *wrapped(nu)))
     return "\n".join(lines)
