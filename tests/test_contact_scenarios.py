@@ -7,7 +7,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from trsim.scenario.load import load
-from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, SEPARATION
+from trsim.solve.march.record import (
+    EVENT_IMPULSE,
+    EVENT_KIND,
+    EVENT_TIME,
+    IMPACT,
+    ONSET,
+    SEPARATION,
+)
 
 from .runs import run
 
@@ -38,6 +45,30 @@ def test_three_balls_in_a_row():
     r = go("three_balls")
     v = [r[f"{n}_ball.velocity"][-1, 0] for n in ("first", "second", "third")]
     assert v == pytest.approx([-0.0710, 0.0764, 0.9945], abs=1e-4)
+
+
+def test_three_balls_struck_one_after_the_other():
+    r = go("three_balls_struck")
+    v = [r[f"{n}_ball.velocity"][-1, 0] for n in ("first", "second", "third")]
+    assert v == pytest.approx([0.0, 0.0, 1.0], abs=1e-9)
+
+
+def test_a_ball_bounces_until_it_rests():
+    r = go("bouncing_ball")
+    rests = r.events[r.events[:, EVENT_KIND] == ONSET][-1, EVENT_TIME]
+    assert rests == pytest.approx(2.87348, rel=1e-3)
+    assert r["floor.normal_force"][-1] == pytest.approx(0.981, rel=1e-4)
+
+
+@pytest.mark.parametrize("hit, blow, hinge", [(0.6, 2.775, 0.825), (0.4625, 3.6, 0.0)])
+def test_a_pendulum_hits_a_stop(hit, blow, hinge):
+    r = go("pendulum_at_a_stop", f"parameters.hit={hit}")
+    (line,) = r.events[r.events[:, EVENT_KIND] == IMPACT]
+    assert line[EVENT_IMPULSE] == pytest.approx(blow, rel=1e-6)
+    rows = len(r.mechanism.stages.every)
+    push = np.sum([one[5:8] for one in r.impulses if one[2] < rows and one[3] == 1], axis=0)
+    along = push @ (np.cos(0.05), np.sin(0.05), 0.0)
+    assert along == pytest.approx(hinge, abs=1e-5)
 
 
 def test_a_roller_over_a_box():

@@ -114,7 +114,7 @@ def test_meanings_of_docstrings():
         ("solver", ["method: auto | dop853 | radau | g", "tolerance: number >= 1e-14, <= 0.1, d",
                     "force: true or false, default false", "max_steps: whole number > 0"]),
         ("contact_laws", ["K = 4/(3 (s_i + s_j))",
-                          "stiffness: internal | paper | cylinder | hertz or numb",
+                          "stiffness: internal | paper | cylinder | hertz | table or numb",
                           "friction.law: none | coulomb"]),
         ("initial", ["equilibrium: all or list of text", "NAME: number"]),
         ("forces", ["applied_load", "limit_stop"]),

@@ -547,3 +547,25 @@ def test_a_point_through_a_thin_plate_is_told():
              "corner_radius: 0.0009")  # fmt: skip
     words = told(x=0, y=1, r=0, k=1e4, points=plate)
     assert any("too deep" in one for one in words)
+
+
+BOUNCING = """
+planar: false
+bodies:
+  ball: {{mass: 0.1, inertia: [1.6e-5, 1.6e-5, 1.6e-5], at: [0, 0.03, 0], velocity: {v}}}
+forces:
+  floor: {{type: surface_contact, surface: {{body: ground, shape: plane}},
+          ball: {{body: ball, at: [0, 0.03, 0], radius: 0.02}}}}
+contact_laws:
+  pad: {{normal: {normal}, restitution: 0.8, stiffness: 1e7,
+        friction: {{law: sticking, coefficient: 0.3, stribeck_speed: 1e-3,
+                   bristle_stiffness: 1e4, bristle_damping: 1}}}}
+gravity: [0, -9.81, 0]
+solver: {{end: 0.3}}
+"""
+
+
+@pytest.mark.parametrize("normal", ["identified", "newton"])
+def test_bristles_begin_every_touch_unbent_in_both_directions(normal):
+    along, across = (run(BOUNCING.format(v=v, normal=normal)) for v in ([2, 0, 0], [0, 0, 2]))
+    assert across["ball.velocity"][:, 2] == pytest.approx(along["ball.velocity"][:, 0], abs=1e-6)

@@ -141,15 +141,29 @@ solver: {end: 3}
 DRUM = CURVES.replace(
     "{body: wheel, at: [0, 0]}", "{body: wheel, at: [0, 0], radius: 5 cm, turn: right}"
 )
+BOUNCES = """
+bodies:
+  ball: {mass: 0.1, inertia: [1.6e-5, 1.6e-5, 1.6e-5], at: [0, 0.1, 0], velocity: [1, 0, 0]}
+forces:
+  floor: {type: surface_contact, surface: {body: ground, shape: plane},
+          ball: {body: ball, at: [0, 0.1, 0], radius: 0.02}}
+contact_laws:
+  hard: {normal: poisson, stiffness: table, table: [[0, 0], [1e-6, 1], [2e-6, 4]],
+         restitution: 0.6, slowest_impact: 1e-2,
+         friction: {law: modified_coulomb, coefficient: 0.3, v0: 1e-4, v1: 1e-3}}
+gravity: [0, -9.81, 0]
+solver: {end: 0.7}
+"""
 SPACE, RADAU = ("planar=false",), ("solver.method=radau",)
 
 
 @pytest.mark.parametrize(
     "text, sets",
-    [(CURVES, ()), (CURVES, SPACE), (CURVES, RADAU), (DRUM, ()), (DRUM, RADAU)],
-    ids=["planar", "space", "radau", "drum", "drum, radau"],
-)
-def test_places_on_curves_and_turns_of_drums(text, sets, monkeypatch):
+    [(CURVES, ()), (CURVES, SPACE), (CURVES, RADAU), (DRUM, ()), (DRUM, RADAU), (BOUNCES, ()),
+     (BOUNCES, SPACE), (BOUNCES, RADAU)],
+    ids=["planar", "space", "radau", "drum", "drum, radau", "bounces", "in space", "and radau"],
+)  # fmt: skip
+def test_places_on_curves_turns_of_drums_and_impacts(text, sets, monkeypatch):
     unbroken, outcome = blocks(sets, text=text)
     assert outcome.status != "failed"
     monkeypatch.setattr(module, "VISIT", 5)

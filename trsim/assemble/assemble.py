@@ -55,6 +55,7 @@ from trsim.assemble.tables import (
     lone,
     masses,
     norm,
+    struck,
     tables,
     turns,
     unequal,
@@ -364,6 +365,10 @@ def build(
         contact=np.array(contacts, np.int64),
         contact_par=contact_numbers(at, instances, contacts, arms),
         contact_state=np.array([i.row.contact.state for i in instances if i.row.contact], np.int64),
+        contact_states=np.array(
+            [i.row.contact.states for i in instances if i.row.contact], np.int64
+        ),
+        contact_impact=struck(at, [instances[e] for e in contacts]),
         contact_angle=np.array([eccentricity(instances[e].element) for e in contacts], np.int64),
         contact_width=np.array(
             [sum(c.size for c in instances[e].channels) for e in contacts], np.int64

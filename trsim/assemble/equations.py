@@ -34,7 +34,7 @@ from trsim.elements.contract import DRIVES, SCENE, call_kernel, compiled
 from trsim.elements.scene import BAUMGARTE
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
-from trsim.kernels.signatures import A1, f8, float64, void
+from trsim.kernels.signatures import A1, f8, float64, i8, void
 from trsim.kernels.vectors import clear, clear_table
 from trsim.laws.sine import sine_cosine
 
@@ -351,6 +351,12 @@ def stiffnesses(s, t):
 def gaps(s, t):
     """Penetration and its rate of every contact, at the poses of the last evaluation."""
     call_all(s, s.gaps, t)
+
+
+@compiled(void(SCENE, f8, i8))
+def strikes(s, t, e):
+    """What an impact of a contact acts with, into `blow`, at the poses of the last evaluation."""
+    call_one(s, s.strike, t, e)
 
 
 @compiled(AT)

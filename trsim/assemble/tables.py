@@ -339,6 +339,21 @@ def contact_numbers(
     return np.array(rows, float).reshape(-1, len(ContactNumbers.columns))
 
 
+def struck(at: Addresses, contacts: list[Instance]) -> NDArray[np.int64]:
+    """1 of every contact whose touches take no time.  Raises ModelError for one with a bar."""
+    found = np.array([i.row.contact is not None and i.row.contact.impact is not None
+                      for i in contacts], np.int64)  # fmt: skip
+    for instance, strikes in zip(contacts, found, strict=True):
+        if strikes and max(instance.row.con[:2]) >= at.n_rigid:
+            raise ModelError(
+                "an impact that takes no time would strike one node of a flexible bar, whose mass "
+                "is that of its elements: what comes of it depends on their number",
+                "take a law of a force, as `identified`; of a stop leave out `restitution`",
+                (instance.section, instance.name),
+            )
+    return found
+
+
 def eccentricity(element: Element) -> int:
     """Where among its channels a contact has the place of its touch, or -1."""
     place = 0

@@ -30,6 +30,8 @@ joint coordinates and sensors (S, angles unwrapped), the states z, and writes wh
     load        of what rubs in a joint, loads[e] = Load: how its reaction, pressed[e], presses,
                 and what friction is made of it; zd of its states      assemble/rubbing.py
     rub         F[i] += the wrenches of the friction force rubbed[e]
+    strike      blow[k] = force, moment on body j, then on body i, world axes, of an impulse of 1
+                along the normal, k = 0, and along two directions across it; zero where it has none
 
 A spec of the section `bodies` says of itself
 
@@ -63,7 +65,7 @@ from trsim.statuses import Ended
 
 KINDS = (
     *("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure"),
-    *("load", "rub"),
+    *("load", "rub", "strike"),
 )
 
 
@@ -158,6 +160,15 @@ REACTIONS = (
 )
 
 
+class Impact(NamedTuple):
+    """A touch faster than the slowest impact that takes no time."""
+
+    rule: str  # of laws/impact.py
+    restitution: float
+    static: float = 0.0  # coefficients of friction
+    kinetic: float = 0.0
+
+
 class Contact(NamedTuple):
     """What the solver must know of a contact to step through it (error norm, first step)."""
 
@@ -166,10 +177,13 @@ class Contact(NamedTuple):
     clearance: float  # m, of a journal in its bearing; inf where the contact is none
     slowest_impact: float  # m/s
     damping: float  # chi: of the elastic force at the rate at which the contact began
-    state: int = -1  # entry of z that a touch sets to zero
+    state: int = -1  # first entry of z that a touch sets to zero
     slope: float = 0.0  # s/m, of its coefficient of friction over the speed, at rest
     jump: int = -1  # column of par with the coefficient of a friction that jumps at rest
     radius: float = 0.0  # m, of the bearing of a journal
+    impact: Impact | None = None
+    states: int = 1  # how many such entries there are
+    known_to: float = inf  # m, the depth to which its law is given
 
 
 class ContactNumbers(Columns, par="contact_par"):

@@ -25,6 +25,8 @@ from trsim.elements.contract import Pair, Turning
 from trsim.kernels.columns import V3, constraint_row, f8, i8
 from trsim.kernels.lazy import internal
 
+PARALLEL = 0.9  # a cosine: nearer to a line directions span no plane well
+
 
 class TwoPoints(Pair):
     """Of an element between a point of each frame."""
@@ -231,6 +233,27 @@ def twist(F, i, m):
     F[i, 3] += m[0]
     F[i, 4] += m[1]
     F[i, 5] += m[2]
+
+
+@internal
+def impulse(blow, k, p_i, p_j, f):
+    """Row k of what an impact acts with: the impulse f on body j at the end of the arm p_j, and -f
+    on body i at that of p_i; see `strike` of contract.py."""
+    m_i, m_j = cross(p_i, f), cross(p_j, f)
+    for c in range(3):
+        blow[k, c], blow[k, 3 + c] = f[c], m_j[c]
+        blow[k, 6 + c], blow[k, 9 + c] = -f[c], -m_i[c]
+
+
+@internal
+def impulses(blow, p_i, p_j, n, z, x):
+    """All rows of it: n and two directions across it, one across z, or x where n is nearly z."""
+    a = x if abs(dot(z, n)) > PARALLEL else z
+    t = cross(n, a)
+    t = scaled(1.0 / sqrt(dot(t, t)), t)
+    impulse(blow, 0, p_i, p_j, n)
+    impulse(blow, 1, p_i, p_j, t)
+    impulse(blow, 2, p_i, p_j, cross(n, t))
 
 
 @internal

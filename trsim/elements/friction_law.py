@@ -75,6 +75,13 @@ class Friction(Spec):
         return self.law == "coulomb"
 
     @property
+    def coefficients(self) -> tuple[float, float]:
+        """At rest and while sliding; 0 where there is none."""
+        sliding = self.coefficient if self.law != "none" else 0.0
+        held = self.static_coefficient if self.law == "sticking" else None
+        return float(held or sliding or 0.0), float(sliding or 0.0)
+
+    @property
     def numbers(self) -> tuple[int, tuple[float, ...]]:
         """Code of the law and its N_PARAMETERS numbers."""
         given = {**dict(self), STATIC: self.static_coefficient or self.coefficient}

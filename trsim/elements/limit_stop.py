@@ -8,12 +8,13 @@ along the axis of the joint; of a place on a curve along its tangent, on the poi
 fades in over the ramp, so there is no jump at the touch and no memory of the impact speed; soft
 impacts are right, where Lankarani-Nikravesh is not.  In the phase of contact the spring is drawn on
 to d < 0, where no accepted step ever is.  The end of the ramp and the place from which the force
-would pull are corners, located like a touch.
+would pull are corners, located like a touch.  With a restitution a touch faster than the slowest
+impact takes no time (solve/march/impacts.py), and this force is that of what no longer bounces.
 """
 
 from typing import Annotated, ClassVar
 
-from annotated_types import Ge, Gt
+from annotated_types import Ge, Gt, Interval
 from pydantic import model_validator
 
 from trsim.elements.contract import (
@@ -25,6 +26,7 @@ from trsim.elements.contract import (
     Channel,
     Contact,
     Element,
+    Impact,
     Reach,
     Row,
     Turning,
@@ -37,6 +39,7 @@ from trsim.elements.frames import (
     at_both,
     carried,
     dot,
+    impulse,
     minus,
     on_joint,
     points,
@@ -87,14 +90,16 @@ class Wall(Spec):
 class LimitStop(Spec):
     """A stop: `point` against `wall`, or the coordinate of `joint` between `lower` and `upper`.
 
-    point      what touches the wall
-    wall       what it touches
-    joint      joint whose coordinate is limited; the place of a point on a curve is one
-    lower      least coordinate
-    upper      largest coordinate
-    stiffness  of the contact
-    damping    of the contact, where the ramp is over
-    ramp       penetration over which the damping fades in
+    point           what touches the wall
+    wall            what it touches
+    joint           joint whose coordinate is limited; the place of a point on a curve is one
+    lower           least coordinate
+    upper           largest coordinate
+    stiffness       of the contact
+    damping         of the contact, where the ramp is over
+    ramp            penetration over which the damping fades in
+    restitution     rate after a touch over rate before; with it a touch takes no time
+    slowest_impact  with a restitution: the rate below which nothing bounces
     """
 
     type: ClassVar[str] = "limit_stop"
@@ -106,6 +111,8 @@ class LimitStop(Spec):
     stiffness: Annotated[float, Gt(0), Unit("N/m", "N*m/rad")]
     damping: Annotated[float, Ge(0), Unit("N*s/m", "N*m*s/rad")] = 0.0
     ramp: Annotated[float, Gt(0), Unit("m", "rad")] = 1e-4
+    restitution: Annotated[float, Interval(ge=0, le=1), Unit("-")] | None = None
+    slowest_impact: Annotated[float, Gt(0), Unit("m/s", "rad/s")] = 0.01
 
     @model_validator(mode="after")
     def one_kind(self):
@@ -119,6 +126,13 @@ class LimitStop(Spec):
             raise ValueError(f"lower must be < upper, got {self.lower:g} and {self.upper:g}")
         if self.wall is not None and not any(self.wall.normal):
             raise ValueError("`normal` must not be zero")
+        if self.restitution is not None and self.damping == 0.0:
+            raise ValueError(
+                "with `restitution` give a `damping` above 0: with it what no longer bounces comes "
+                "to rest on the spring"
+            )
+        if self.restitution is None and "slowest_impact" in self.model_fields_set:
+            raise ValueError("`slowest_impact` is the end of bounces: give `restitution` too")
         return self
 
     def pressed(self, joints):
@@ -134,7 +148,7 @@ class LimitStop(Spec):
         return hinge.bodies, None if own and slides((own,)) else hinge
 
 
-WITH_UNITS = ("lower", "upper", "ramp", "stiffness", "damping")
+WITH_UNITS = ("lower", "upper", "ramp", "stiffness", "damping", "slowest_impact")
 ON_WALL, ON_ANGLE, ON_STROKE, ON_ARC = 0, 1, 2, 3
 KINDS = {"angle": ON_ANGLE, "stroke": ON_STROKE, ARC: ON_ARC}
 UNBOUNDED = 1e300
@@ -153,7 +167,11 @@ class Own(AlongCurve):
 
 
 def pack(name, spec, at):
-    contact = Contact(spec.stiffness, 1.0, float("inf"), 0.0, 0.0)
+    strikes = spec.restitution is not None
+    contact = Contact(
+        spec.stiffness, 1.0, float("inf"), spec.slowest_impact if strikes else 0.0, 0.0,
+        impact=Impact("newton", spec.restitution) if strikes else None,
+    )  # fmt: skip
     if spec.joint is None:
         if spec.wall.body == spec.point.body:
             raise ScenarioError(
@@ -245,6 +263,22 @@ def gap(t, scene, e):
 
 
 @kernel
+def strike(t, scene, e):
+    blow, own, X = scene.blow, Own(scene, e), scene.X
+    _, _, n = touch(scene, e)
+    p_j = arm(X, own.j, own.p_j)
+    r_i = minus(place(X, own.j, p_j), (X[own.i, 0], X[own.i, 1], X[own.i, 2]))
+    impulse(blow, 0, r_i, p_j, n)
+    if own.kind == ON_ANGLE:
+        for c in range(3):
+            blow[0, c] = blow[0, 6 + c] = 0.0
+            blow[0, 3 + c], blow[0, 9 + c] = n[c], -n[c]
+    for k in range(1, 3):
+        for c in range(12):
+            blow[k, c] = 0.0
+
+
+@kernel
 def corners(t, scene, e):
     out = scene.corner
     own = Own(scene, e)
@@ -316,6 +350,7 @@ ELEMENT = Element(
     kernels={
         "force": force,
         "gaps": gap,
+        "strike": strike,
         "corners": corners,
         "energy": energy,
         "measure": measure,

@@ -74,6 +74,7 @@ class Model(Packed):
     measure: I2
     load: I2
     rub: I2
+    strike: I2
     row_start: I1  # (m+n_d+1) lines of J of a row: one per frame it names  assemble/pattern.py
     line_row: I1  # (lines) whose they are
     line_frame: I1  # (lines) their frames, the ground too
@@ -108,8 +109,10 @@ class Model(Packed):
     scale: A1  # (n_y) lever or magnitude that goes with it
     contact: I1  # (n_contacts) row e of each element with a gap
     contact_par: A2  # (n_contacts, 7) ContactNumbers of contract.py
-    contact_state: I1  # (n_contacts) entry of z to reset at a touch, or -1
+    contact_state: I1  # (n_contacts) first entry of z to reset at a touch, or -1
+    contact_states: I1  # (n_contacts) how many there are
     contact_width: I1  # (n_contacts) its output columns
+    contact_impact: I1  # (n_contacts) 1: a touch takes no time     solve/march/impacts.py
     contact_angle: I1  # (n_contacts) among them: first of the eccentricity's two, or -1
     wanted: I1  # (N) first output column of a row, or -1
     silent: I1  # columns of forces that do not act
@@ -215,6 +218,7 @@ class Scene(Model):
     moved: T6  # (n, 6) what multipliers do to the bodies, axes of the solve
     free: T6  # (n, 6) accelerations without constraints, axes of the solve
     gap: T2  # (N, 2) penetration and its rate
+    blow: T12  # (3, 12) wrenches of impulses of 1 of what strikes
     corner: T2  # (N, 2) how far an element has left its branch, and the branch it goes to
     left: A1  # (N) the largest such value since it was cleared
     E: A1  # (N_STORED) stored energy
@@ -259,6 +263,7 @@ def scene(model: Model) -> Scene:
         (("mem",), (len(model.con), model.n_mem)),
         (("gap", "corner"), (len(model.con), 2)),
         (("left",), (len(model.con),)),
+        (("blow",), (3, 12)),
         (("phi", "phi_t", "gamma", "lam"), (rows,)),
         (("J",), (len(model.line_row), 6)),
         (("B", "W"), (slots, 6)),

@@ -12,7 +12,8 @@ from pydantic import model_validator
 
 from trsim.elements.placed import Placed
 from trsim.errors import ScenarioError
-from trsim.fields import Flag, Unit, point, vector
+from trsim.fields import Flag, Spec, Unit, point, vector
+from trsim.laws.friction import CODES
 from trsim.laws.profiles import Flaw, profile, smooth
 from trsim.laws.surfaces import CYLINDER, PLANE, SHAPES, SPHERE
 
@@ -73,6 +74,20 @@ class Surface(Placed):
         if self.hollow and self.shape == "profile" and not self.closed:
             raise ScenarioError("only a closed profile has an inside", "closed: true", ("hollow",))
         return self
+
+
+class Ball(Spec):
+    """A ball of a body, or a roller whose axis is the z axis of the surface, or a point.
+
+    body    the body
+    at      its centre, as drawn; a place, or the name of a point
+    radius  0 of a point
+    """
+
+    type: ClassVar[str] = "ball"
+    body: str
+    at: point("m")
+    radius: Annotated[float, Ge(0), Unit("m")] = 0.0
 
 
 def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
@@ -182,3 +197,14 @@ def side_of(surface, centre):
         what = "the centre is drawn on the profile, so nobody knows on which side it is"
         raise ScenarioError(what, "draw it a radius away", ("ball", "at"))
     return 1 if way[k][0] * d[k][1] - way[k][1] * d[k][0] >= 0.0 else -1
+
+
+def check_levers(spec, code, friction):
+    """Refuse resistance to rolling and spinning where it has no meaning."""
+    if code != CODES["modified_coulomb"] or friction[0] == 0.0:
+        what = "resistance to rolling and spinning comes in with speed as sliding friction does"
+        hint = "take `modified_coulomb`, with `v0`, `v1` and a `coefficient` above 0"
+        raise ScenarioError(what, hint, ("contact",))
+    if spec.ball.radius == 0.0:
+        what = "a point neither rolls nor spins"
+        raise ScenarioError(what, "give the ball a radius, or no levers", ("ball", "radius"))

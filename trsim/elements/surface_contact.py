@@ -45,6 +45,7 @@ from trsim.elements.frames import (
     carried,
     cross,
     dot,
+    impulses,
     minus,
     plus,
     points,
@@ -54,12 +55,23 @@ from trsim.elements.frames import (
     twist_apart,
     velocity,
 )
-from trsim.elements.surface import Surface, fits_behind, shape_of, thickness
+from trsim.elements.surface import Ball, Surface, check_levers, fits_behind, shape_of, thickness
 from trsim.errors import ScenarioError
-from trsim.fields import Spec, Unit, point
+from trsim.fields import Spec, Unit
 from trsim.kernels.columns import V3, f8, i8, run
 from trsim.kernels.lazy import internal
-from trsim.laws.contact import elastic, impact_force, normal_force, stored
+from trsim.laws.contact import HERTZ, TABLE, damped, elastic, lossy, stored
+from trsim.laws.force_tables import (
+    PIECE,
+    beyond_piece,
+    next_piece,
+    on_piece,
+    piece_at,
+    piece_of,
+    rising,
+    rub_of,
+    stored_in,
+)
 from trsim.laws.friction import (
     CODES,
     N_PARAMETERS,
@@ -74,20 +86,6 @@ from trsim.laws.surfaces import PLANE, PROFILE, SPHERE, away, beside
 
 CORNERED = CODES["modified_coulomb"]
 DEEP = 0.2  # of the radius of a ball: deeper than that it is no longer one that touches a surface
-
-
-class Ball(Spec):
-    """A ball of a body, or a roller whose axis is the z axis of the surface, or a point.
-
-    body    the body
-    at      its centre, as drawn; a place, or the name of a point
-    radius  0 of a point
-    """
-
-    type: ClassVar[str] = "ball"
-    body: str
-    at: point("m")
-    radius: Annotated[float, Ge(0), Unit("m")] = 0.0
 
 
 class SurfaceContact(Spec):
@@ -119,7 +117,8 @@ class Own(OnSurface):
     profile: i8  # its offset in tab
     state: i8  # of z: the deflection of bristles along t, that along z behind it; or -1
     friction_law: i8
-    form: i8  # of the elastic law: that of Hertz
+    form: i8  # of the elastic law: that of Hertz, or a table
+    table: i8  # its offset in tab
     radius: f8  # of the surface, m
     free: f8  # 1, or -1: inside
     clearance: f8  # read by other forms
@@ -148,6 +147,9 @@ def pack(name, spec, at):
     frame = surface.frame
     shaped, curvature = shape_of(spec, at, frame.inside(minus(ball.at, surface.at)))
     normal = law.on_surface(ball.radius, curvature)
+    offset = len(at.tab)
+    if law.table is not None:
+        at.tab.extend(rising(*law.columns)[0])
     code, friction = law.friction.numbers
     state = bristles(spec, law.friction, friction, at)
     if spec.rolling_resistance or spec.spinning_friction:
@@ -155,7 +157,8 @@ def pack(name, spec, at):
     own = Own.packed(
         normal, **points(at, i, j, surface.at, ball.at), **shaped,
         u_i=at.axes(i, frame.x), w_i=at.axes(i, frame.y), a_i=at.axes(i, frame.z),
-        ball=ball.radius, state=state, friction_law=code, friction=friction, form=0, clearance=0.0,
+        ball=ball.radius, state=state, friction_law=code, friction=friction, clearance=0.0,
+        form=HERTZ if law.table is None else TABLE, table=offset,
         slowest_impact=law.slowest_impact, rolling=spec.rolling_resistance,
         spinning=spec.spinning_friction,
     )  # fmt: skip
@@ -169,20 +172,12 @@ def pack(name, spec, at):
         state,
         law.friction.slope,
         jump,
+        impact=law.impact,
+        states=2,
+        known_to=inf if law.table is None else law.table[-1][0],
     )
     states = () if state < 0 else (state, state + 1)
     return Row(*own, contact, states=states, travel="surface")
-
-
-def check_levers(spec, code, friction):
-    """Refuse resistance to rolling and spinning where it has no meaning."""
-    if code != CORNERED or friction[0] == 0.0:
-        what = "resistance to rolling and spinning comes in with speed as sliding friction does"
-        hint = "take `modified_coulomb`, with `v0`, `v1` and a `coefficient` above 0"
-        raise ScenarioError(what, hint, ("contact",))
-    if spec.ball.radius == 0.0:
-        what = "a point neither rolls nor spins"
-        raise ScenarioError(what, "give the ball a radius, or no levers", ("ball", "radius"))
 
 
 def bristles(spec, law, numbers, at):
@@ -225,14 +220,27 @@ def slides(scene, e):
 
 
 @internal
-def normal_of(own, depth, rate):
+def pressed(scene, own, depth):
+    """The elastic force; of a table that of the piece that is held."""
+    if own.form != TABLE:
+        return elastic(depth, own)
+    if depth <= 0.0:
+        return 0.0
+    tab, o = scene.tab, own.table
+    k = piece_at(tab, o, depth) if own.branch == WHOLE else piece_of(own.branch)
+    return on_piece(tab, o, k, depth)
+
+
+@internal
+def normal_of(scene, own, depth, rate):
     """F_n."""
+    F_e = pressed(scene, own, depth)
     if own.ramp > 0.0:
-        return impact_force(depth, rate, own)
+        return damped(F_e, depth, rate, own)
     first = own.impact_speed
     if first == 0.0:  # not latched yet (UNLOCATED): this approach is the impact
         first = max(rate, own.slowest_impact)
-    return normal_force(depth, rate, first, own)
+    return lossy(F_e, rate, first, own.chi)
 
 
 @internal
@@ -240,7 +248,7 @@ def part_of(own, F_n, speed):
     """Friction at a speed, N, positive against it; bristles aside."""
     f = own.friction
     if own.friction_law == CORNERED and own.branch != WHOLE:
-        return -on_branch(own.branch, F_n, speed, f[0], f[1], f[2])
+        return -on_branch(rub_of(own.branch), F_n, speed, f[0], f[1], f[2])
     F_t, _ = friction_force(own.friction_law, F_n, speed, 0.0, f)
     return -F_t
 
@@ -295,15 +303,15 @@ def force(t, scene, e):
     if own.phase == FLIGHT:
         return
     c_i, c_j, n, depth, rate, v_t, speed = slides(scene, e)
-    if own.friction_law == CORNERED and own.branch != WHOLE:
-        left[e] = max(left[e], beyond(own.branch, speed, own.friction[1], own.friction[2]))
+    if own.branch != WHOLE:
+        left[e] = max(left[e], beyond_branch(scene, own, depth, speed))
     if depth <= 0.0 and own.phase != CONTACT:
         return
     # in contact bristles bend whatever rounding makes of a depth of nothing
-    F_n = normal_of(own, depth, rate)
+    F_n = normal_of(scene, own, depth, rate)
     F_t, rate_t, rate_z = friction_of(scene, e, F_n, n, v_t, speed)
     push_apart(scene.F, own.i, c_i, own.j, c_j, plus(scaled(F_n, n), F_t))
-    zd[IMPACTS] -= (F_n - elastic(depth, own)) * rate
+    zd[IMPACTS] -= (F_n - pressed(scene, own, depth)) * rate
     zd[FRICTION] += dot(F_t, v_t)
     if own.state >= 0:
         zd[own.state], zd[own.state + 1] = rate_t, rate_z
@@ -319,17 +327,51 @@ def gap(t, scene, e):
 
 
 @kernel
+def strike(t, scene, e):
+    blow, own = scene.blow, Own(scene, e)
+    c_i, c_j, n, _, _, _, _ = slides(scene, e)
+    # across n: along the profile and z, or any two directions
+    z, x = arm(scene.X, own.i, own.a_i), arm(scene.X, own.i, own.u_i)
+    impulses(blow, c_i, c_j, n, z, x)
+
+
+@internal
+def beyond_rub(own, speed):
+    """How far friction has left its branch, m/s; -1 where it has none."""
+    if own.friction_law != CORNERED:
+        return -1.0
+    return beyond(rub_of(own.branch), speed, own.friction[1], own.friction[2])
+
+
+@internal
+def beyond_branch(scene, own, depth, speed):
+    """How far friction or the piece of a table has been left."""
+    found = beyond_rub(own, speed)
+    if own.form == TABLE:
+        found = max(found, beyond_piece(scene.tab, own.table, piece_of(own.branch), depth))
+    return found
+
+
+@kernel
 def corners(t, scene, e):
     out, own = scene.corner, Own(scene, e)
     out[e, 0] = -1.0
-    if own.friction_law != CORNERED or own.phase != CONTACT:
+    rubs, tabled = own.friction_law == CORNERED, own.form == TABLE
+    if own.phase != CONTACT or not (rubs or tabled):
         return
-    _, _, _, _, _, _, speed = slides(scene, e)
-    v0, v1, branch = own.friction[1], own.friction[2], own.branch
-    if branch == WHOLE:
-        out[e, 1] = branch_of(speed, v0, v1)
+    _, _, _, depth, _, _, speed = slides(scene, e)
+    tab, o, v0, v1 = scene.tab, own.table, own.friction[1], own.friction[2]
+    if own.branch == WHOLE:
+        rub = branch_of(speed, v0, v1) if rubs else 0.0
+        out[e, 1] = rub + (PIECE * piece_at(tab, o, depth) if tabled else 0.0)
+        return
+    k, rub, by_rub = piece_of(own.branch), rub_of(own.branch), beyond_rub(own, speed)
+    out[e, 0] = beyond_branch(scene, own, depth, speed)
+    if tabled and not by_rub > beyond_piece(tab, o, k, depth):
+        k = next_piece(tab, o, k, depth)
     else:
-        out[e, 0], out[e, 1] = beyond(branch, speed, v0, v1), neighbour(branch, speed, v0, v1)
+        rub = neighbour(rub, speed, v0, v1)
+    out[e, 1] = rub + PIECE * k
 
 
 @kernel
@@ -338,7 +380,10 @@ def energy(t, scene, e):
     if own.phase == FLIGHT:
         return
     _, _, _, _, depth, _ = touch(scene, e)
-    scene.E[CONTACTS] += stored(depth, own)
+    if own.form == TABLE:
+        scene.E[CONTACTS] += stored_in(scene.tab, own.table, depth)
+    else:
+        scene.E[CONTACTS] += stored(depth, own)
 
 
 @measured
@@ -347,7 +392,7 @@ def measure(t, scene, e, o):
     c_i, _, n, depth, rate, v_t, speed = slides(scene, e)
     F_n, F_t = 0.0, (0.0, 0.0, 0.0)
     if own.phase != FLIGHT and depth > 0.0:
-        F_n = normal_of(own, depth, rate)
+        F_n = normal_of(scene, own, depth, rate)
         F_t, _, _ = friction_of(scene, e, F_n, n, v_t, speed)
     f = plus(scaled(F_n, n), F_t)
     d = minus(c_i, arm(scene.X, own.i, own.p_i))
@@ -429,6 +474,7 @@ ELEMENT = Element(
     kernels={
         "force": force,
         "gaps": gap,
+        "strike": strike,
         "corners": corners,
         "energy": energy,
         "measure": measure,

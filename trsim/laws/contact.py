@@ -4,6 +4,7 @@
 
     form 0  hertz      F_e = K d^n                    K in N/m^n    [Hertz1881] [Lankarani1990]
     form 1  cylinder   F_e = K d sqrt(d / (d + c))    K in N/m      [Liu2007] [Pereira2011]
+    form 2  table      F_e given by points                          force_tables.py
 
 d > 0 is penetration, d' > 0 approach, d0' > 0 the rate when the contact began, c the radial
 clearance of an internal cylinder.  F > 0 pushes the bodies apart; a contact never pulls.
@@ -21,7 +22,8 @@ from typing import NamedTuple
 from trsim.kernels.lazy import internal
 from trsim.laws.tables import smoothstep
 
-HERTZ, CYLINDER = 0, 1  # form
+HERTZ, CYLINDER, TABLE = 0, 1, 2  # form
+RULES = ("newton", "poisson")  # of impacts that take no time: impact.py
 
 
 class Pair(NamedTuple):
@@ -110,7 +112,13 @@ def normal_force(d, d_dot, d_dot0, pair):
     In a free impact 1 + chi d'/d0' stays positive.  Bodies torn apart by something else may turn
     it negative; the force is then cut at zero, for the reasons in [ModelicaElastoGap].
     """
-    return max(0.0, elastic(d, pair) * (1.0 + pair.chi * d_dot / d_dot0))
+    return lossy(elastic(d, pair), d_dot, d_dot0, pair.chi)
+
+
+@internal
+def lossy(F_e, d_dot, d_dot0, chi):
+    """`normal_force` of any elastic force F_e, N."""
+    return max(0.0, F_e * (1.0 + chi * d_dot / d_dot0))
 
 
 @internal
@@ -129,9 +137,15 @@ def impact_force(d, d_dot, pair):
     float                force, N; the function IMPACT of commercial programs, with the damper of
                          its STEP: d at x1 - x, d' = -x'
     """
+    return damped(elastic(d, pair), d, d_dot, pair)
+
+
+@internal
+def damped(F_e, d, d_dot, pair):
+    """`impact_force` of any elastic force F_e, N."""
     if d <= 0.0:
         return 0.0
-    return max(0.0, elastic(d, pair) + pair.damping * smoothstep(d / pair.ramp) * d_dot)
+    return max(0.0, F_e + pair.damping * smoothstep(d / pair.ramp) * d_dot)
 
 
 @internal

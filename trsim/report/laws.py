@@ -12,6 +12,7 @@ from trsim.report.display import Shown
 from trsim.report.marks import spaced
 from trsim.report.spectra import label
 from trsim.report.style import colour, finished, panels
+from trsim.scenario.load import loads
 
 TITLES = ("law", "what", "of", "gives", "unit of", "unit", "visited from", "visited to", "note")
 LOOK = {"law": "-", "at rest": "--", "impact": "-", "visited": "-"}
@@ -22,6 +23,7 @@ def draw(runs: list[Shown], folder: Path) -> Found:
     found, lines = nothing(), []
     for k, shown in enumerate(runs):
         of, lost = laws(shown.run)
+        found.lines.extend(pairs(shown.run))
         who = f"{label(shown)}: " if len(runs) > 1 else ""
         for law in of:
             name = file_name("law", law.name) + (f"_{k + 1}" if k else "")
@@ -36,6 +38,12 @@ def draw(runs: list[Shown], folder: Path) -> Found:
         found.lines.append("no law that varies, no contact and no curve: nothing is drawn")
     found.files.append(table(folder / "laws.csv", TITLES, lines))
     return found
+
+
+def pairs(run: Any) -> list[str]:
+    """What contact laws took of the table of pairs."""
+    given = loads(run.text("scenario/resolved")).contact_laws
+    return [f"contact_laws.{name}: {law.taken}" for name, law in given.items() if law.pair]
 
 
 def in_words(law: Law) -> str:

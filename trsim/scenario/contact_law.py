@@ -4,6 +4,14 @@ stiffness: internal    Hertz, journal in bearing    K = 4/(3 (s_i + s_j)) sqrt(R
            paper       the same with R_i + R_j
            cylinder    line contact over `width`
            a number    K in N/m^1.5                 s = (1 - nu^2)/E
+           table       by points, `table`, with the damping of `normal`; of a ball on a surface
+
+Laws of instantaneous impacts (laws/impact.py) rest on the same stiffness, with the damping of
+Hunt and Crossley for a restitution of 0 at the slowest impact.
+
+pair: steel-rubber     moduli, friction and, where one is known, restitution of two materials; with
+                       it stiffness is `hertz` unless given, and friction modified_coulomb with
+                       v0 = 0 and v1 = 1 mm/s
 """
 
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
@@ -11,14 +19,26 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 from annotated_types import Ge, Gt, Interval
 from pydantic import model_validator
 
+from trsim.elements.contract import Impact
 from trsim.elements.friction_law import Friction
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
-from trsim.laws.contact import ball_stiffness, cylinder_stiffness, damping_factor, hertz_stiffness
+from trsim.laws.contact import (
+    RULES,
+    ball_stiffness,
+    cylinder_stiffness,
+    damping_factor,
+    hertz_stiffness,
+)
+from trsim.laws.force_tables import rising
+from trsim.scenario.pairs import PAIRS, listed, values, with_pair
+
+__doc__ = f"{__doc__}\n{listed()}\n"  # what `explain` prints
 
 Modulus = Annotated[float, Gt(0), Unit("Pa")]
 Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
 Length = Annotated[float, Gt(0), Unit("m")]
+Point = tuple[Annotated[float, Unit("m")], Annotated[float, Unit("N")]]
 Speed = Annotated[float, Gt(0), Unit("m/s")]
 
 # what a word cannot do without
@@ -27,10 +47,12 @@ STIFFNESS_NEEDS = {
     "paper": ("bearing_radius", "youngs_modulus", "poisson"),
     "cylinder": ("bearing_radius", "width", "youngs_modulus", "poisson"),
     "hertz": ("youngs_modulus", "poisson"),
+    "table": ("table",),
 }
 # what a law of the normal force cannot do without, and what is of no use to it
 NORMAL_NEEDS = {"impact": ("damping", "ramp")}
 NOT_OF = {"impact": ("restitution",)}
+RESTING = "hunt_crossley"  # of newton and poisson: how what no longer bounces comes to rest
 
 
 class Normal(NamedTuple):
@@ -52,9 +74,11 @@ def _needs(spec: Any, what: str, keys: tuple[str, ...]) -> None:
 class ContactLaw(Spec):
     """The law of a contact between two bodies of given material and size.
 
+    pair                    two materials, for what is not given; the first is that of the surface
     normal                  how force depends on penetration and its rate
     stiffness               a word that computes it from size and material, or the number
     exponent                of the penetration
+    table                   rows [penetration, force] of stiffness table, both rising from [0, 0] on
     bearing_radius          radius of the bearing, and lever of the friction
     width                   length of a line contact
     youngs_modulus          of the bearing, and of the journal unless given
@@ -64,16 +88,23 @@ class ContactLaw(Spec):
     restitution             speed after an impact over speed before; of all laws but impact
     damping                 of impact, where its ramp is over
     ramp                    of impact: penetration over which the damping fades in
-    slowest_impact          floor of the remembered impact speed
+    slowest_impact          floor of the remembered impact speed; of newton and poisson the approach
+                            below which nothing bounces
     friction                along the surfaces
     """
 
     type: ClassVar[str] = "contact_law"
-    normal: Literal["lankarani_nikravesh", "hunt_crossley", "flores", "identified", "impact"]
+    pair: Literal[*PAIRS] | None = None
+    normal: Literal[
+        *("lankarani_nikravesh", "hunt_crossley", "flores", "identified", "impact"),
+        *("newton", "poisson"),
+    ]
     stiffness: Annotated[
-        Literal["internal", "paper", "cylinder", "hertz"] | Annotated[float, Gt(0)], Unit("N/m^1.5")
+        Literal["internal", "paper", "cylinder", "hertz", "table"] | Annotated[float, Gt(0)],
+        Unit("N/m^1.5"),
     ] = "internal"
     exponent: Annotated[float, Interval(ge=1, le=3), Unit("-")] = 1.5
+    table: tuple[Point, ...] | None = None
     bearing_radius: Length | None = None
     width: Length | None = None
     youngs_modulus: Modulus | None = None
@@ -86,14 +117,44 @@ class ContactLaw(Spec):
     slowest_impact: Speed = 0.01
     friction: Friction = Friction()
 
+    @model_validator(mode="before")
+    @classmethod
+    def of_pair(cls, data: Any) -> Any:
+        """What is not given is that of the pair."""
+        known = isinstance(data, dict) and data.get("pair") in [*PAIRS]
+        return with_pair(data) if known else data
+
     @model_validator(mode="after")
     def complete(self) -> "ContactLaw":
         _needs(self, f"stiffness {self.stiffness}", STIFFNESS_NEEDS.get(str(self.stiffness), ()))
-        _needs(self, f"normal {self.normal}", NORMAL_NEEDS.get(self.normal, ("restitution",)))
+        needed = NORMAL_NEEDS.get(self.normal, ("restitution",))
+        if self.pair and "restitution" in needed and self.restitution is None:
+            what = f"no origin is known for a restitution of {self.pair}"
+            raise ScenarioError(what, "give `restitution`, or take normal impact", ("pair",))
+        _needs(self, f"normal {self.normal}", needed)
         for key in NOT_OF.get(self.normal, ("damping", "ramp")):
             if getattr(self, key) is not None:
                 raise ScenarioError(f"{key} is no number of normal {self.normal}", "", (key,))
+        if self.table is not None:
+            self.check_table()
         return self
+
+    def check_table(self) -> None:
+        """Refuse a table that does not rise from nothing, or that is not what is asked for."""
+        if self.stiffness != "table":
+            what = "a table is given, and another stiffness"
+            raise ScenarioError(what, "stiffness: table", ("stiffness",))
+        try:
+            rising(*self.columns)
+        except ValueError as error:
+            hint = "in m and N unless units are given"
+            raise ScenarioError(str(error), hint, ("table",)) from None
+
+    @property
+    def columns(self) -> tuple[list[float], list[float]]:
+        """Penetrations and forces of the table."""
+        rows = self.table or ()
+        return [d for d, _ in rows], [F for _, F in rows]
 
     @property
     def materials(self) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
@@ -102,11 +163,39 @@ class ContactLaw(Spec):
         nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
         return (E_i, nu_i), (self.journal_youngs_modulus or E_i, nu_j)
 
+    @property
+    def taken(self) -> str:
+        """What is as the table of pairs has it, with origins; empty without a pair."""
+        if self.pair is None:
+            return ""
+        told = []
+        for key, value in values(PAIRS[self.pair]).items():
+            of, name = (self.friction, key[9:]) if "." in key else (self, key)
+            unused = key == "friction.static_coefficient" and self.friction.law != "sticking"
+            if getattr(of, name) == value.number and not unused:
+                told.append(f"{key} {value.number:g} ({value.from_where})")
+        return f"{self.pair}: {'; '.join(told) or 'nothing'}"
+
+    @property
+    def impact(self) -> Impact | None:
+        """What a touch is that takes no time; None of laws of a force."""
+        if self.normal not in RULES or self.restitution is None:
+            return None
+        return Impact(self.normal, self.restitution, *self.friction.coefficients)
+
+    @property
+    def chi(self) -> float:
+        """The damping factor of a law with a restitution."""
+        law, e = (RESTING, 0.0) if self.normal in RULES else (self.normal, self.restitution)
+        return damping_factor(law, e)
+
     def on_surface(self, radius: float, curvature: float | None) -> Normal:
         """The numbers of a ball on a surface; curvature: as of `ball_stiffness`, None where it is
         not the same in all directions."""
         if isinstance(self.stiffness, float):
             K, exponent = self.stiffness, self.exponent
+        elif self.table is not None:
+            K, exponent = rising(*self.columns)[1], 1.0
         elif self.stiffness != "hertz":
             what = f"stiffness {self.stiffness} is that of a journal in its bearing"
             raise ScenarioError(what, "give a number, or `hertz` of a ball", ("contact",))
@@ -117,7 +206,7 @@ class ContactLaw(Spec):
             K, exponent = ball_stiffness(radius, curvature, *self.materials), 1.5
         if self.normal == "impact":
             return Normal(K, exponent, 0.0, float(self.damping or 0.0), float(self.ramp or 0.0))
-        return Normal(K, exponent, damping_factor(self.normal, self.restitution), 0.0, 0.0)
+        return Normal(K, exponent, self.chi, 0.0, 0.0)
 
     def normal_numbers(self, c: float) -> tuple[float, float, int, float, float]:
         """K, exponent, form, chi of the law; and the Hertz stiffness it has at a light touch.
@@ -127,10 +216,14 @@ class ContactLaw(Spec):
         if self.normal == "impact":
             what = "normal impact is no law of a clearance joint"
             raise ScenarioError(what, "take one with a restitution", ("contact",))
+        if self.impact:
+            what = f"normal {self.normal} makes impacts, and no forces, of the touches of a journal"
+            hint = "its forces are what play is about: take one of them, as `identified`"
+            raise ScenarioError(what, hint, ("contact",))
         bearing, journal = self.materials
-        chi = damping_factor(self.normal, self.restitution)
-        if self.stiffness == "hertz":
-            what = "stiffness hertz is that of a ball on a surface"
+        chi = self.chi
+        if self.stiffness in ("hertz", "table"):
+            what = f"stiffness {self.stiffness} is that of a ball on a surface"
             raise ScenarioError(what, "of a journal in its bearing take `internal`", ("contact",))
         if isinstance(self.stiffness, float):
             return self.stiffness, self.exponent, 0, chi, self.stiffness

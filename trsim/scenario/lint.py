@@ -142,7 +142,11 @@ def _restitutions(scenario: Any) -> Iterator[str]:
     """What a law really delivers for the restitution written."""
     for name, law in scenario.contact_laws.items():
         e = law.restitution
-        if law.normal in ("identified", "impact") or (e == 0.0 and law.normal == "flores"):
+        if (
+            law.impact
+            or law.normal in ("identified", "impact")
+            or (e == 0.0 and law.normal == "flores")
+        ):
             continue
         real = delivered_restitution(damping_factor(law.normal, e))
         if abs(real - e) > OFF or (law.normal == "lankarani_nikravesh" and e < 0.7):

@@ -224,7 +224,7 @@ class Scenario(Spec):
     drives           prescribed motion of joints
     sensors          angles and strokes with a name, for loads, expressions and plots
     forces           what acts on bodies
-    contact_laws     laws of clearance joints, by name
+    contact_laws     laws of contacts, by name
     initial          how the mechanism starts, where that is not as drawn with the drives at speed
     solver           how, how far and how exactly the motion is integrated
     output           what is recorded, and how often

@@ -99,6 +99,7 @@ def settings(scenario: Any, mechanism: Mechanism) -> Settings:
     """
     solver, output = scenario.solver, scenario.output
     method = METHODS[solver.method]
+    check_impacts(solver, mechanism)
     if solver.end is None:
         raise ScenarioError(
             "a run needs `solver: {end: ...}`", "for example `end: 1 s`", ("solver", "end")
@@ -139,6 +140,21 @@ def settings(scenario: Any, mechanism: Mechanism) -> Settings:
         tolerance=solver.tolerance,
         at_rows=int(method.driven),
     )
+
+
+def check_impacts(solver: Any, mechanism: Mechanism) -> None:
+    """Refuse touches that take no time where none is located; raises ScenarioError."""
+    method = METHODS[solver.method]
+    if method.rests or (solver.locates and method.marches):
+        return
+    for e in mechanism.model.contact[mechanism.model.contact_impact > 0].tolist():
+        there = mechanism.instances[e]
+        raise ScenarioError(
+            f"{there.section}.{there.name} has touches that take no time, which are none unless "
+            "each is located",
+            "leave out `method`, or give `locate_events: true`",
+            ("solver", "method" if solver.locates else "locate_events"),
+        )
 
 
 def check_given_steps(solver: Any, key: str) -> None:

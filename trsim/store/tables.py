@@ -17,7 +17,11 @@ AT_EVENTS = {
 }
 MAY_BE_NAN = {"angle"}  # of an event: a stop has none
 # of events, by their numbers in solve/march/record.py: ONSET = 1.0 and so on
-KINDS = ("", "onset", "separation", "to implicit", "to explicit", "user", "jump", "corner", "turns")
+KINDS = (
+    *("", "onset", "separation", "to implicit", "to explicit", "user", "jump", "corner", "turns"),
+    "impact",
+)
+AXES = ("normal", "friction_1", "friction_2")  # of an impact, in the order of its impulses
 
 
 def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
@@ -53,17 +57,25 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
         asked = [event.name for event in user if event.role not in ("stall", "taut")]
         file["events"].attrs["user"] = asked
         fields.append(Field("did", "", "what a user event did", 2, words=did))
-    if user or mechanism.stages.switches.jumps >= 0:
+    strikes = bool(mechanism.model.contact_impact.any())
+    if user or mechanism.stages.switches.jumps >= 0 or strikes:
         fields.append(Field("work", "J", "done by it: change of kinetic and stored energy", 5))
-    if np.any(mechanism.model.jump):
-        fields.append(Field("impulse", impulse_unit(mechanism), "of a drive whose rate jumps", 6))
+    if np.any(mechanism.model.jump) or strikes:
+        meant = "along the normal, of an impact" if strikes else "of a drive whose rate jumps"
+        fields.append(Field("impulse", impulse_unit(mechanism), meant, 6))
     return Growing(file["events"], fields, EVENT_COLUMNS, EXPECTED)
 
 
 def impulse_unit(mechanism: Any) -> str:
-    """The unit of the impulses of drives; both where there are both."""
-    drives = [i for i in mechanism.instances if i.section == "drives"]
+    """The unit of the impulses of drives and of impacts; both where there are both."""
+    drives = [i for i in mechanism.instances if i.section == "drives" or struck(i)]
     return " or ".join(dict.fromkeys("N*m*s" if i.row.turns else "N*s" for i in drives))
+
+
+def struck(instance: Any) -> bool:
+    """Whether touches of an instance take no time."""
+    contact = instance.row.contact
+    return contact is not None and contact.impact is not None
 
 
 def speed_unit(mechanism: Any) -> str:
@@ -92,12 +104,15 @@ def recorded(file: h5py.File, mechanism: Any, rows: list[Field]) -> Growing | No
 
 
 def jumps(file: h5py.File, mechanism: Any, time_field: Field) -> tuple[Growing, Growing] | None:
-    """The tables of impulses and of velocities at user events that change what holds; None where
-    none does."""
+    """The tables of impulses and of velocities at impacts, and at user events that change what
+    holds; None where there are none."""
     events, stages = mechanism.stages.switches.events, mechanism.stages
-    if not any(event.turned for event in events):
+    touching = [mechanism.instances[e] for e in mechanism.model.contact.tolist()]
+    if not any(event.turned for event in events) and not any(map(struck, touching)):
         return None
-    which = Field("event", "", "at which event", 1, words=tuple(e.name for e in events))
+    whose = (*(event.name for event in events), *(i.name for i in touching))
+    which = Field("event", "", "at which event, or the impact of which contact", 1, words=whose)
+    acting = (*stages.every, *(f"{i.name}.{axis}" for i in touching for axis in AXES))
     bodies = [""] * (max(mechanism.frames.values(), default=0) + 1)
     for name, frame in mechanism.frames.items():
         bodies[frame] = bodies[frame] or name
@@ -105,7 +120,7 @@ def jumps(file: h5py.File, mechanism: Any, time_field: Field) -> tuple[Growing, 
     impulses = [
         time_field,
         which,
-        Field("row", "", "the constraint row that acts", 2, words=stages.every or ("-",)),
+        Field("row", "", "the constraint row that acts", 2, words=acting or ("-",)),
         Field("body", "", "the body it acts on", 3, words=words),
         Field("impulse", "N*s or N*m*s", "Lambda of the row: M (v+ - v-) = J^T Lambda", 4),
         Field("force", "N*s", "impulse on the body, world axes", 5, 3),

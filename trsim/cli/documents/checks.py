@@ -77,6 +77,7 @@ class Checked(Subject):
     contacts           names of joints and stops
     events             user event -> when it happens and what it does, in words
     sections           section of a body -> what lies beyond it and what acts there, in words
+    pairs              contact law -> what it takes of a pair of materials, with origins
     tables             load or motion -> its variable, its curve, and what it is outside, in words
     planar             whether the motion stays in a plane
     planar_assumed     whether nothing but the start says so
@@ -108,6 +109,7 @@ class Checked(Subject):
     contacts: list[str]
     events: dict[str, str]
     sections: dict[str, str]
+    pairs: dict[str, str]
     tables: dict[str, str]
     planar: bool
     planar_assumed: bool

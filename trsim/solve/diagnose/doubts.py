@@ -207,6 +207,18 @@ def of_elements(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
         entries = getattr(scenario, instance.section, {})
         if instance.name in entries:
             yield from instance.element.doubts(instance.name, entries[instance.name], largest)
+            yield from beyond_law(instance, *largest(f"{instance.name}.penetration", signed=True))
+
+
+def beyond_law(instance: Any, depth: float, when: float) -> Iterator[str]:
+    """A contact that was pressed in deeper than its law is given."""
+    contact = instance.row.contact
+    if contact is not None and depth > contact.known_to:
+        yield (
+            f"{instance.section}.{instance.name}: a penetration of {depth:.3g} m at {when:.4g} s "
+            f"is beyond the last row of its table, {contact.known_to:.3g} m, where the force goes "
+            "straight on; give the table more rows"
+        )
 
 
 def of_turns(scenario: Any, outcome: Outcome) -> Iterator[str]:

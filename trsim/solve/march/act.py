@@ -27,6 +27,7 @@ from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Scene, carried
 from trsim.errors import ModelError
 from trsim.solve.march import record as rec
+from trsim.solve.march.impacts import strike
 from trsim.solve.march.impulses import Jump, no_jump, together, told
 from trsim.solve.march.load_steps import counts, fastest, look, standing, started
 from trsim.solve.march.phases import settle
@@ -66,6 +67,7 @@ def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings) -
         if run.failed:
             break
     r.fired = 0
+    run.strike()
     found = np.array(run.recorded).reshape(-1, 2 + run.work.n_out)
     return Acted(run.work, found, run.ended, together(run.jumps))
 
@@ -111,6 +113,16 @@ class _Acting:
             r.watch[over, rec.AT_ONCE] = 1.0
             r.watch[over, rec.JUST_NOW] = 0.0
         return over
+
+    def strike(self) -> None:
+        """The impacts of this instant, with the velocities that events have left."""
+        if self.failed:
+            return
+        try:
+            self.jumps.append(strike(self.mechanism, self.work, self.r, self.b, self.setting))
+        except ModelError as error:
+            where = ".".join(map(str, error.path))
+            self.failed, self.ended = True, ("failed", f"{where}: {error.what}")
 
 
 def why_ended(mechanism: Any, work: Scene, r: Record, b: Buffers, event: UserEvent) -> str:

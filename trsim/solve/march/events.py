@@ -245,8 +245,10 @@ def change(s, r, b, setting, c, end):
             # a step that other events make short may end while it is still on its way; so may the
             # first one of what begins at rest just where it touches
             g, rate = inside(s, r, b, c, end)
-            away = r0 > 0.0 or (r0 >= -ROUNDING * r.speed and sign * rate > 0.0)
-            return NONE if away and sign * g >= -noise(s, f0) else 0.0
+            slow = ROUNDING * r.speed
+            away = r0 > 0.0 or (r0 >= -slow and sign * rate > 0.0)
+            still = abs(r0) <= slow and abs(rate) <= slow  # two that touch and rest
+            return NONE if (away or still) and sign * g >= -noise(s, f0) else 0.0
         g, rate = inside(s, r, b, c, low)
         f0, r0 = sign * g, sign * rate
     if low >= end:

@@ -60,6 +60,7 @@ from trsim.solve.march.record import (
     FULL,
     LEAPT,
     LOAD,
+    MOST_BLOWS,
     NOT_FINITE,
     OLD,
     OPEN,
@@ -265,10 +266,14 @@ def too_fast(s, r):
 def full(s, r, b):
     """Whether the next step may overflow a buffer."""
     contacts, watched = s.contact.size, s.watch.shape[0]
+    room = b.events.shape[0]
+    for c in range(contacts):
+        if s.contact_impact[c] > 0:
+            room = b.events.shape[0] - 3 * MOST_BLOWS
     return (
         r.rows > b.rows.shape[0] // 2
         or r.step_rows + contacts >= b.steps.shape[0]
-        or r.event_rows + contacts + watched + s.feature.shape[0] >= b.events.shape[0]
+        or r.event_rows + contacts + watched + s.feature.shape[0] >= room
         or r.point_rows > b.points.shape[0] // 2
         or (r.n_passed > 0 and 2 * r.n_passed > r.passed.shape[0])
     )

@@ -71,7 +71,12 @@ def change_phases(s, r, b, setting, t1):
             memory.impact_speed = speed
             look(s, c)
             if s.contact_state[c] >= 0:
-                r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
+                for k in range(s.contact_states[c]):
+                    r.y[s.n_q + s.n_v + s.contact_state[c] + k] = 0.0
+            if s.contact_impact[c] > 0:  # impacts.py decides what follows, and how it begins
+                r.struck[c] = 1
+                r.fired += 1
+                continue
             speed = max(speed, 1e-12)
             h = min(h, hertz_step(own.stiffness, own.exponent, own.mass, speed, setting.step_error))
         else:

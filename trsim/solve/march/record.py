@@ -44,6 +44,8 @@ FOUND = 200  # places between two samples where extremes are looked for
 ) = range(8)  # fmt: skip
 ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
 CORNER, TURNS = 7.0, 8.0  # of a static path
+IMPACT = 9.0
+MOST_BLOWS = 1000  # impacts at one instant
 
 
 POINTS = 6  # samples of every channel that are kept: see peaks.py
@@ -120,6 +122,7 @@ class Record(Packed):
     largest: A1 = of("kin")  # size of the channels of one kind, see `kin` of the scene
     faint: A1 = of("kin")  # what rounding makes of channels of a kind
     impact: A1  # (n_contacts) largest penetration so far
+    struck: I1 = of("contact")  # 1 of a contact whose touch takes no time and has just begun
     # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
     by_place: A2 = of("n_w", "n_dx")  # w' against displacements
     by_rate: A2 = of("n_w", "n_w")  # w' against w
@@ -353,7 +356,7 @@ def fresh_buffers(
         "row": 1 + model.n_out,
         "steps": max(1024, 8 * contacts),
         "step": 2 + int(np.max(model.contact_width, initial=0)),
-        "events": max(256, 8 * (contacts + watched)),
+        "events": max(256, 8 * (contacts + watched)) + blows(model),
         "points": max(1024, 2 * points + 16) if points else 0,
         "stages": stages,
         "dense_rows": dense_rows,
@@ -366,6 +369,12 @@ def fresh_buffers(
     }
     out = np.zeros(max(model.n_out, 1))
     return Buffers(**zeros(Buffers, model, sizes), out=out, firm=np.ones(3), row_firm=np.ones(rows))
+
+
+def blows(model: Model) -> int:
+    """The lines of events that impacts of one instant may add: each one, and what begins and ends
+    with it."""
+    return 3 * MOST_BLOWS if model.contact_impact.any() else 0
 
 
 def controlled(model: Model) -> int:
