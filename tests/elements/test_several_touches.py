@@ -60,6 +60,21 @@ def test_a_roller_rests_in_a_groove(half, more):
     assert np.ptp(got["roller.position"], axis=0) == pytest.approx([0, 0, 0], abs=1e-12)
 
 
+def test_equilibrium_counts_each_touch_once():
+    """Drawn too deep and aside, and brought to where it rests."""
+    a, k = radians(30), 1e6
+    text = GROOVE.format(m=0.3, x=1e-6, y=0.01 / sin(a) - 6e-6, v=[0, 0], r=0.01, push=0, n=1, k=k,
+                         c=100, ramp=1e-9, end=0.01, every=1e-3, more="",
+                         points=[[-0.05, 0.1 * cos(a)], [0, 0], [0.05, 0.1 * cos(a)]])  # fmt: skip
+    hold = ("forces:\n  hold: {type: bushing, bodies: [ground, roller], at: [0, 0], stiffness: "
+            "[0, 0, 0], rotational_stiffness: [0, 0, 1]}")  # fmt: skip
+    got = run(text.replace("forces:", hold) + "initial: {equilibrium: all}\n")
+    want = 0.3 * G / (2 * sin(a))
+    for n in (1, 2):
+        assert got[f"groove.{n}.penetration"] == pytest.approx(want / k, rel=1e-6)
+        assert got[f"groove.{n}.normal_force"][1:] == pytest.approx(want, rel=1e-6)
+
+
 def test_it_leaves_one_flank_while_it_is_on_the_other():
     """Pushed aside by F it is at W / 2 sin a -+ F / 2 cos a: off one flank where F = W / tan a."""
     a, W = radians(40), 0.3 * G
