@@ -28,6 +28,7 @@ ONLY_OF = {
     "smooth": ("profile",),
 }
 SPLINE = 1e-7  # of its size: how far arcs are from a spline through points
+FINE = 1e-8  # the same where a side touches it, whose force follows the radii of the arcs
 
 
 class Surface(Placed):
@@ -86,6 +87,7 @@ def shapes_of(spec, at, centre) -> tuple[list[dict[str, Any]], float | None]:
     code, R = SHAPES[surface.shape], surface.radius or 0.0
     free = -1.0 if surface.hollow else 1.0
     shaped = {"shape": code, "radius": R, "free": free, "profile": 0, "closed": 0, "seams": -1}
+    shaped |= {"outline": -1, "span": 0.0, "wide": 0.0, "bulge": 0.0}
     if code == PLANE:
         return [{**shaped, "sharp": inf, "reach": inf}], 0.0
     if code in (SPHERE, CYLINDER):
@@ -94,18 +96,20 @@ def shapes_of(spec, at, centre) -> tuple[list[dict[str, Any]], float | None]:
             raise ScenarioError(what, "", ("ball", "radius"))
         bends = {"sharp": inf, "reach": R} if surface.hollow else {"sharp": R, "reach": inf}
         return [{**shaped, **bends}], free / R if code == SPHERE else None
-    return [{**shaped, **one} for one in of_profile(surface, r, at, centre)], None
+    return [{**shaped, **one} for one in of_profile(spec, at, centre)], None
 
 
-def of_profile(surface, r, at, centre) -> list[dict[str, Any]]:
+def of_profile(spec, at, centre) -> list[dict[str, Any]]:
     """What is other than in `shapes_of` of each touch of a profile."""
+    surface, r = spec.surface, spec.ball.radius
     turned = False
     try:
         side = (-1 if surface.hollow else 1) if surface.closed else side_of(surface, centre)
         turned = side < 0 and not surface.closed  # the drawn side is the left one
         if turned:
             surface, side = turned_round(surface), 1
-        found = pieces_of(surface, side, inward=r > 0.0)
+        spline = SPLINE if spec.ball.corners is None else FINE
+        found = pieces_of(surface, side, inward=r > 0.0, spline=spline)
         many = [] if found.reach > r else touches_of(surface, side, r)
     except Flaw as flaw:
         k = flaw.point
@@ -160,17 +164,20 @@ def touches_of(surface, side, r):
     return found_touches(surface.points, radius, surface.closed, side, r)
 
 
-def pieces_of(surface, side, inward=False):
-    """The profile of a surface, whose free side is as laws/profiles.py has it.  Raises Flaw."""
-    closed, radius = surface.closed, surface.corner_radius
-    return made(surface.points, None if surface.smooth else radius, closed, side, inward)
+def pieces_of(surface, side, inward=False, spline=SPLINE):
+    """The profile of a surface, whose free side is as laws/profiles.py has it.  Raises Flaw.
+
+    inward: whether straight sides may meet inwards at an edge; spline: a tolerance.
+    """
+    radius = None if surface.smooth else surface.corner_radius
+    return made(surface.points, radius, surface.closed, side, inward, spline)
 
 
 @lru_cache(maxsize=256)  # a run assembles several times, and looks for how large a ball fits
-def made(points, radius, closed, side, inward):
+def made(points, radius, closed, side, inward=False, spline=SPLINE):
     """The profile through points, straight with a radius at its corners, or else smooth."""
     if radius is None:
-        return smooth(points, closed, side, SPLINE)
+        return smooth(points, closed, side, spline)
     return profile(points, radius, closed, side, inward)
 
 

@@ -15,6 +15,10 @@ slowed by moments on both bodies, b_r and b_s the levers of the law, w = omega_j
 
 g is the friction law's part of full friction at a speed.  In flight there is no force whatever the
 gap; a touch is located and latches the approach speed, as in a clearance joint.
+
+Of an outline with a round edge (outlines.py) the centre is its place that is nearest to the surface.
+Where several places touch at once (laws/touches.py, corners on a plane) each has a row of its own,
+and a row in front of them stands for the whole: it has no force and tells their sum.
 """
 
 from math import inf, sqrt
@@ -49,6 +53,7 @@ from trsim.elements.frames import (
     scaled,
     twist_apart,
 )
+from trsim.elements.outlines import outlined
 from trsim.elements.surface import Surface, fits_behind, shapes_of, thickness
 from trsim.elements.touching import (
     CORNERED,
@@ -73,17 +78,21 @@ LOSSES = ("damping_loss", "friction_loss")
 
 
 class Ball(Spec):
-    """A ball of a body, or a roller whose axis is the z axis of the surface, or a point.
+    """A ball of a body, or a roller whose axis is the z axis of the surface, or a point; or an
+    outline with a round edge.
 
-    body    the body
-    at      its centre, as drawn; a place, or the name of a point
-    radius  0 of a point
+    body     the body
+    at       its centre, as drawn; a place, or the name of a point
+    radius   0 of a point; of an outline that of its edge
+    corners  of an outline, [x, y] from `at` along the axes of the surface, as drawn: centres of its
+             round corners, in their order; two are a straight face
     """
 
     type: ClassVar[str] = "ball"
     body: str
     at: point("m")
     radius: Annotated[float, Ge(0), Unit("m")] = 0.0
+    corners: tuple[Annotated[tuple[float, float], Unit("m")], ...] | None = None
 
 
 class SurfaceContact(Spec):
@@ -116,7 +125,10 @@ def pack(name, spec, at):
     i = at.body(surface.body, "surface", "body", near=surface.at, off=1.0)
     j = at.body(ball.body, "ball", "body", near=ball.at)
     frame = surface.frame
-    shapes, curvature = shapes_of(spec, at, frame.inside(minus(ball.at, surface.at)))
+    if ball.corners is None:
+        shapes, curvature = shapes_of(spec, at, frame.inside(minus(ball.at, surface.at)))
+    else:
+        shapes, curvature = outlined(spec, at, j), None
     law = at.contact_law(spec.contact)
     normal = law.on_surface(ball.radius, curvature)
     patch = 0.0
@@ -172,11 +184,15 @@ def row_of(name, spec, at, law, normal, numbers):
         jump,
     )
     states = tuple(k for first in (state, lost) if first >= 0 for k in (first, first + 1))
-    return Row(*own, contact, channels, states=states, travel="surface")
+    travel = "surface" if numbers["outline"] < 0 else "outline"
+    return Row(*own, contact, channels, states=states, travel=travel)
 
 
 def check_levers(spec, code, friction):
     """Refuse resistance to rolling and spinning where it has no meaning."""
+    if spec.ball.corners is not None:
+        what = "an outline has no resistance to rolling and spinning"
+        raise ScenarioError(what, "leave the levers out", ("ball", "corners"))
     if code != CORNERED or friction[0] == 0.0:
         what = "resistance to rolling and spinning comes in with speed as sliding friction does"
         hint = "take `modified_coulomb`, with `v0`, `v1` and a `coefficient` above 0"
@@ -342,7 +358,8 @@ def doubts(name, spec, largest):
         )
     limit = DEEP * r if r > 0.0 else inf
     if depth > min(limit, thickness(surface)):
-        into = f"a ball of radius {r:.3g} m" if r > 0.0 else "a surface so thin"
+        round_ = "a ball" if spec.ball.corners is None else "an edge"
+        into = f"{round_} of radius {r:.3g} m" if r > 0.0 else "a surface so thin"
         yield (
             f"forces.{name}: a penetration of {depth:.3g} m at {when:.4g} s is too deep for "
             f"{into}: the contact is too soft, or the impact too fast, for its law to mean "

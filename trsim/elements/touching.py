@@ -3,7 +3,7 @@
 The equations are in surface_contact.py.
 """
 
-from math import sqrt
+from math import inf, sqrt
 
 from trsim.elements.contract import WHOLE
 from trsim.elements.frames import (
@@ -22,6 +22,7 @@ from trsim.kernels.columns import V3, f8, i8, run
 from trsim.kernels.lazy import internal
 from trsim.laws.contact import elastic, impact_force, normal_force
 from trsim.laws.friction import CODES, N_PARAMETERS, friction_force, on_branch, part_of_bristle
+from trsim.laws.outlines import beside_side
 from trsim.laws.surfaces import PLANE, PROFILE, away, beside
 
 CORNERED = CODES["modified_coulomb"]
@@ -39,6 +40,7 @@ class Own(OnSurface):
     closed: i8  # 1 of a closed profile, 2 of a part of one
     profile: i8  # its offset in tab
     seams: i8  # that of how many seams it has and where they are, or -1; laws/touches.py
+    outline: i8  # that of how many corners an outline has and where they are, or -1: a ball
     touches: i8  # how many rows behind this one it stands for; 0: it is a touch itself
     lost: i8  # of z: what damping takes, what friction takes behind it; or -1
     state: i8  # of z: the deflection of bristles along t, that along z behind it; or -1
@@ -63,10 +65,48 @@ class Own(OnSurface):
 
 
 @internal
+def met(scene, e):
+    """What `carried` tells of the centre of a ball, or of the place of an outline that is nearest
+    to the surface."""
+    own = Own(scene, e)
+    r_i, p_j, d, v = carried(scene, e)
+    if own.outline < 0:
+        return r_i, p_j, d, v
+    q = nearest_of(scene, e, d, 0.0)
+    v = plus(v, cross(relative_spin(scene.V, own.i, own.j), q))
+    return plus(r_i, q), plus(p_j, q), plus(d, q), v
+
+
+@internal
+def nearest_of(scene, e, d, ahead):
+    """From the point of an outline to its place that is nearest to the surface, world axes.
+
+    d: where the point is; ahead: by how many seconds the outline is turned on, as seen from body i.
+    """
+    own, X, tab = Own(scene, e), scene.X, scene.tab
+    x, y, z = arm(X, own.i, own.u_i), arm(X, own.i, own.w_i), arm(X, own.i, own.a_i)
+    w, many = relative_spin(scene.V, own.i, own.j), int(tab[own.outline])
+    least, found = inf, (0.0, 0.0, 0.0)
+    last, before = found, found
+    for k in range(many + 1):
+        o = own.outline + 1 + 3 * (k % many)
+        q = arm(X, own.j, (tab[o], tab[o + 1], tab[o + 2]))
+        q = plus(q, scaled(ahead, cross(w, q)))
+        r = plus(d, q)
+        here = (dot(x, r), dot(y, r), dot(z, r))
+        if k > 0:
+            s, u = beside_side(tab, own, before, here)
+            if s < least:
+                least, found = s, plus(scaled(1.0 - u, last), scaled(u, q))
+        last, before = q, here
+    return found
+
+
+@internal
 def touch(scene, e):
     """Arms of the centre on both bodies, s, n in world axes, penetration and its rate."""
     own, X = Own(scene, e), scene.X
-    r_i, p_j, d, v = carried(scene, e)
+    r_i, p_j, d, v = met(scene, e)
     x, y, z = arm(X, own.i, own.u_i), arm(X, own.i, own.w_i), arm(X, own.i, own.a_i)
     s, m = away(scene.tab, own, (dot(x, d), dot(y, d), dot(z, d)))
     n = plus(plus(scaled(m[0], x), scaled(m[1], y)), scaled(m[2], z))
@@ -143,7 +183,7 @@ def is_behind(scene, e):
     own = Own(scene, e)
     if own.shape != PROFILE or own.closed == 1:
         return False
-    _, _, d, _ = carried(scene, e)
+    _, _, d, _ = met(scene, e)
     x, y = dot(arm(scene.X, own.i, own.u_i), d), dot(arm(scene.X, own.i, own.w_i), d)
     side, _ = beside(scene.tab, own.profile, 1, x, y)
     return side < 0.0
@@ -169,30 +209,40 @@ def acting(scene, e, met):
 
 @internal
 def rolls(scene, e):
-    """The mean of the velocities at which the place of touch moves along both surfaces, world axes.
+    """The mean of the velocities at which the place of touch moves along both bodies, world axes.
 
-    Along the surface of body i it is that of the place of the surface nearest to the centre,
-
-        p - s n    moves by    u - (n . u) n - s n'       u: the centre's velocity seen from body i
-
-    along the ball that less the sliding.
+    Seen from body i it is the place p - s n of the surface that is nearest to a centre p, or to the
+    nearest place p of an outline; along body j it moves by that less the sliding.
     """
-    X, own = scene.X, Own(scene, e)
+    own = Own(scene, e)
     _, _, d, u = carried(scene, e)
     _, _, s, n, _, _ = touch(scene, e)
     _, _, _, _, _, v_t, _ = slides(scene, e)
-    along = minus(u, scaled(dot(n, u), n))
     speed = sqrt(dot(u, u))
-    if s != 0.0 and speed > 0.0:
-        x, y, z = arm(X, own.i, own.u_i), arm(X, own.i, own.w_i), arm(X, own.i, own.a_i)
-        step = APART * abs(s) / speed
-        one, other = plus(d, scaled(step, u)), minus(d, scaled(step, u))
-        _, a = away(scene.tab, own, (dot(x, one), dot(y, one), dot(z, one)))
-        _, b = away(scene.tab, own, (dot(x, other), dot(y, other), dot(z, other)))
-        by = 0.5 * s / step
-        for c, axis in ((0, x), (1, y), (2, z)):
-            along = minus(along, scaled(by * (a[c] - b[c]), axis))
-    return minus(along, scaled(0.5, v_t))
+    if own.outline >= 0:
+        w = relative_spin(scene.V, own.i, own.j)
+        speed += own.span * sqrt(dot(w, w))
+    if own.ball == 0.0 or speed == 0.0:  # of a point it is the point
+        return minus(minus(u, scaled(dot(n, u), n)), scaled(0.5, v_t))
+    step = APART * abs(s) / speed
+    change = minus(foot_of(scene, e, d, u, step), foot_of(scene, e, d, u, -step))
+    return minus(scaled(0.5 / step, change), scaled(0.5, v_t))
+
+
+@internal
+def foot_of(scene, e, d, u, ahead):
+    """The place of the surface that is touched some seconds on, seen from body i; world axes.
+
+    d, u: where the point of the ball is, and its velocity seen from body i.
+    """
+    own, X = Own(scene, e), scene.X
+    x, y, z = arm(X, own.i, own.u_i), arm(X, own.i, own.w_i), arm(X, own.i, own.a_i)
+    p = plus(d, scaled(ahead, u))
+    if own.outline >= 0:
+        p = plus(p, nearest_of(scene, e, p, ahead))
+    s, m = away(scene.tab, own, (dot(x, p), dot(y, p), dot(z, p)))
+    n = plus(plus(scaled(m[0], x), scaled(m[1], y)), scaled(m[2], z))
+    return minus(p, scaled(s, n))
 
 
 @internal

@@ -180,7 +180,10 @@ def finished(
 ) -> Profile:
     """The profile of pieces one behind the other, and of places where they meet at an angle."""
     places, normals = sampled(pieces)
-    reach = min(fits(places, side * normals), fits_on_edges(edges, places))
+    if not edges and all(piece[0] in (STRAIGHT, ROUND if side > 0 else HOLLOW) for piece in pieces):
+        reach = inf  # outside of what is convex
+    else:
+        reach = min(fits(places, side * normals), fits_on_edges(edges, places))
     return Profile(numbers_of(pieces, edges), sharp, reach, places, pieces, edges)
 
 
