@@ -16,7 +16,7 @@ slowed by moments on both bodies, b_r and b_s the levers of the law, w = omega_j
 g is the friction law's part of full friction at a speed.  In flight there is no force whatever the
 gap; a touch is located and latches the approach speed, as in a clearance joint.
 
-Of an outline with a round edge (outlines.py) the centre is its place that is nearest to the surface.
+Of an outline with a round edge (outlines.py) the centre is its place nearest to the surface.
 Where several places touch at once (laws/touches.py, corners on a plane) each has a row of its own,
 and a row in front of them stands for the whole: it has no force and tells their sum.
 """
