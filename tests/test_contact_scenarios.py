@@ -122,3 +122,18 @@ def test_a_cam_throws_its_flat_follower_off():
     want = abs(w * (bend + h) - 0.5 * w * h)[on]  # along the cam, less half the sliding
     assert r["face.rolling_speed"][on] == pytest.approx(want, abs=30.0 * err)
     assert r["face.penetration"].min() < -1e-8
+
+
+def test_a_roller_in_a_groove():
+    r = go("roller_in_a_groove", "output.every=1 ms")
+    W, F = 0.3 * 9.81, 20 * r.t
+    flanks = sorted((r["groove.1.normal_force"], r["groove.2.normal_force"]), key=lambda f: f[-1])
+    assert [flank[1] for flank in flanks] == pytest.approx([W, W], rel=0.02)
+    both = (r.t > 0.01) & (r.t < 0.25)
+    for flank, sign in zip(flanks, (-1, 1), strict=True):
+        want = W / (2 * np.sin(np.pi / 6)) + sign * F / (2 * np.cos(np.pi / 6))
+        assert flank[both] == pytest.approx(want[both], abs=0.02)
+    off = r.events[r.events[:, EVENT_KIND] == SEPARATION][:, EVENT_TIME]
+    assert off == pytest.approx([W / np.tan(np.pi / 6) / 20], rel=2e-3)
+    assert flanks[0][-1] == 0.0
+    assert r["groove.touching"][-1] == 1.0
