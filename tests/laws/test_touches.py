@@ -120,3 +120,13 @@ def test_a_star_of_too_many_touches():
     star = np.column_stack([R * np.cos(u), R * np.sin(u)])
     with pytest.raises(Flaw, match="places at once"):
         touches(profile(star, 0.0, True, -1, inward=True), True, -1, 0.31)
+
+
+def test_a_flank_reaches_to_the_corner():
+    """Pressed deep into one flank of a shallow groove, the ball meets the other one near the
+    corner: it is felt by its distance from that line there too."""
+    half, r = 1.3, 0.1
+    got = touches(vee(half), False, 1, r)
+    one, other = np.array([[cos(half), sin(half)], [-cos(half), sin(half)]])  # normals of flanks
+    place = np.linalg.solve([one, other], [0.93 * r, 0.999 * r])
+    assert sorted(depths(got, [place], r)[0]) == pytest.approx([0.001 * r, 0.07 * r], abs=1e-12)

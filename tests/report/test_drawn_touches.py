@@ -16,7 +16,7 @@ SHAPES = {
     "hole": "shape: cylinder, radius: 0.6, hollow: true",
     "profile": "shape: profile, points: [[-1, -0.1], [1, -0.1], [1, 0.1], [-1, 0.1]], closed: true",
     "notch": "shape: profile, closed: true, points: [[-1, -0.4], [1, -0.4], [1, 0.1], [0.5, 0.1], "
-             "[0, -0.1], [-0.5, 0.1], [-1, 0.1]]",
+    "[0, -0.1], [-0.5, 0.1], [-1, 0.1]]",
     "plate": "shape: profile, points: [[-1, 0.1], [1, 0.1]]",
 }
 TEXT = """

@@ -6,8 +6,8 @@ The ball that touches the profile at p with the normal n, and q too, has the rad
 
 Where the least of them over q is below the ball's the ball never comes.  What is left are
 stretches.  Each goes on a little further than the ball comes, since it is pressed in: to where rho
-is KEEP of its radius.  One that the ball touches in two places is cut in its middle, a seam: what
-passes that touches both parts there.
+is KEEP of its radius, and along a straight side to the corner.  One that the ball touches in two
+places is cut in its middle, a seam: what passes that touches both parts there.
 
 Stretches that no ball of this size touches at once share one touch.
 """
@@ -81,7 +81,10 @@ def touches(found: Profile, closed: bool, side: int, r: float) -> list[Touch]:
     places, normals = (np.array([s[k] for s in samples]) for k in (0, 1))
     corner = np.array([s.edge == CORNER for s in samples])
     comes = (least_balls(places, normals, WITHIN * r) >= KEEP * r) & ~corner
-    groups = runs(comes.tolist(), corner.tolist(), closed)
+    groups = [
+        widened(group, samples, comes.tolist(), found, closed)
+        for group in runs(comes.tolist(), corner.tolist(), closed)
+    ]
     if not groups:
         raise Flaw(f"a ball of radius {r:g} m fits nowhere on this profile", "take a smaller one")
     stretches: list[Stretch] = []
@@ -187,6 +190,30 @@ def runs(comes: list[bool], corner: list[bool], closed: bool) -> list[list[int]]
     if closed and comes[start - 1] and not corner[start]:
         found[-1].append(start)
     return [one for one in found if len(one) > 2]
+
+
+def widened(
+    group: list[int], samples: list[Sample], comes: list[bool], found: Profile, closed: bool
+) -> list[int]:
+    """A stretch with all of the straight sides that it ends on, up to corners that turn to the free
+    side and to hollow arcs; not where another one begins before."""
+    n = len(samples)
+    for end, step in ((-1, 1), (0, -1)):
+        last, more = samples[group[end]], []
+        if last.edge != -1 or found.pieces[last.piece][0] != STRAIGHT:
+            continue
+        k = group[end] + step
+        while closed or 0 <= k < n:
+            one = samples[k % n]
+            if one.edge != -1 or one.piece != last.piece or comes[k % n]:
+                hollow = one.edge == -1 and found.pieces[one.piece][0] != STRAIGHT
+                if comes[k % n] or not (one.edge == CORNER or hollow):
+                    more = []
+                break
+            more.append(k % n)
+            k += step
+        group = group + more if step > 0 else more[::-1] + group
+    return group
 
 
 # --- stretches -----------------------------------------------------------------------------
