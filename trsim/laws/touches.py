@@ -199,7 +199,7 @@ def widened(
     side and to hollow arcs; not where another one begins before."""
     n = len(samples)
     for end, step in ((-1, 1), (0, -1)):
-        last, more = samples[group[end]], []
+        last, more = samples[group[end]], list[int]()
         if last.edge != -1 or found.pieces[last.piece][0] != STRAIGHT:
             continue
         k = group[end] + step
