@@ -427,7 +427,8 @@ forces:
     surface: {body: ground, shape: plane}
     ball: {body: ball, at: [0, 25 mm], radius: 20 mm}
 contact_laws:
-  rubber: {normal: impact, stiffness: 1e6, damping: 20 N*s/m, ramp: 0.1 mm,
+  rubber: {normal: impact, stiffness: hertz, youngs_modulus: 5 MPa, poisson: 0.49,
+           damping: 20 N*s/m, ramp: 0.1 mm,
            friction: {law: modified_coulomb, coefficient: 0.4, v0: 1e-4 m/s, v1: 1e-3 m/s}}
 gravity: [0, -9.81, 0]
 solver: {end: 0.2 s}
