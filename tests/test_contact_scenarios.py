@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from trsim.elements.surface import FINE, pieces_of
 from trsim.scenario.load import load
 from trsim.solve.march.record import (
     EVENT_IMPULSE,
@@ -122,3 +123,48 @@ def test_a_wedge(half, stays):
     at_load, end = deep[int(0.15 / r.t[1])], deep[-1]
     assert at_load < -1e-4
     assert (end == pytest.approx(at_load, rel=0.02)) if stays else (end > 1e-4)
+
+
+def test_a_cam_throws_its_flat_follower_off():
+    r = go("cam_flat_contact", "output.every=1 ms")
+    turn, w = 29.8 * r.t + 0.05 * r.t**2, 29.8 + 0.1 * r.t
+    a, b, m, P = 0.04, 0.03, 0.3, 0.3 * 15.75
+    h = np.sqrt((a * np.sin(turn)) ** 2 + (b * np.cos(turn)) ** 2)
+    slope = (a * a - b * b) * np.sin(turn) * np.cos(turn) / h
+    bend = (a * a * b * b) / h**3 - h  # radius of curvature less h
+    # the arcs that stand for the spline through its points have radii a little off: by how much,
+    # where they are, and twice that for what swings on the contact
+    arcs = np.array(pieces_of(r.scenario.forces["face"].surface, 1, True, FINE).pieces)
+    there = np.arctan2(arcs[:, 5], arcs[:, 4]) + np.arccos(arcs[:, 6]) * [[-1], [0], [1]]
+    radius = (a * b) ** 2 / ((a * np.cos(there)) ** 2 + (b * np.sin(there)) ** 2) ** 1.5
+    err = 2.0 * np.abs(arcs[:, 3] - radius).max()
+    assert err < 0.02 * radius.max()
+    off = r.events[r.events[:, EVENT_KIND] == SEPARATION][:, EVENT_TIME]
+    off = off[off > 0.1][0]  # the start is where they touch
+    assert 29.8 + 0.1 * off == pytest.approx(30.0, abs=0.03 + 0.5 * 30.0 * err / 0.0175)
+    on = (r.t > 0.05) & (r.t < off)
+    y = r["tappet.position"][:, 1] - 0.005
+    assert y[on] == pytest.approx(h[on], abs=2e-7)
+    force = P + m * bend * w**2 + m * slope * 0.1
+    assert r["face.normal_force"][on] == pytest.approx(force[on], abs=m * 900.0 * err)
+    assert r["face.place"][on] @ [1, 0, 0] == pytest.approx(
+        (h * np.sin(turn) + slope * np.cos(turn))[on], abs=1e-5
+    )
+    want = abs(w * (bend + h) - 0.5 * w * h)[on]  # along the cam, less half the sliding
+    assert r["face.rolling_speed"][on] == pytest.approx(want, abs=30.0 * err)
+    assert r["face.penetration"].min() < -1e-8
+
+
+def test_a_roller_in_a_groove():
+    r = go("roller_in_a_groove", "output.every=1 ms")
+    W, F = 0.3 * 9.81, 20 * r.t
+    flanks = sorted((r["groove.1.normal_force"], r["groove.2.normal_force"]), key=lambda f: f[-1])
+    assert [flank[1] for flank in flanks] == pytest.approx([W, W], rel=0.02)
+    both = (r.t > 0.01) & (r.t < 0.25)
+    for flank, sign in zip(flanks, (-1, 1), strict=True):
+        want = W / (2 * np.sin(np.pi / 6)) + sign * F / (2 * np.cos(np.pi / 6))
+        assert flank[both] == pytest.approx(want[both], abs=0.02)
+    off = r.events[r.events[:, EVENT_KIND] == SEPARATION][:, EVENT_TIME]
+    assert off == pytest.approx([W / np.tan(np.pi / 6) / 20], rel=2e-3)
+    assert flanks[0][-1] == 0.0
+    assert r["groove.touching"][-1] == 1.0

@@ -203,3 +203,34 @@ def test_the_visited_part_of_a_curve():
     line = sampled(Curve(points=((0.0, 0.0), (0.1, 0.0), (0.3, 0.0))))
     x, _ = part(line, 0.05, 0.2)
     assert (x[0], x[-1]) == pytest.approx((0.05, 0.2), abs=1e-7)
+
+
+def test_a_contact_with_a_surface_tells_where_it_was_deepest(tmp_path):
+    """A weight that is led along a plane and pressed most as it passes x = 0.3 m."""
+    path = tmp_path / "press.h5"
+    small.run(
+        path,
+        text="""\
+bodies:
+  cart: {mass: 1, inertia: 1, at: [0, 0.0199]}
+  ball: {mass: 0.1, inertia: 1e-5, at: [0, 0.0199]}
+joints:
+  rail: {type: prismatic, bodies: [ground, cart], at: [0, 0.0199], axis: [1, 0, 0]}
+  up: {type: prismatic, bodies: [cart, ball], at: [0, 0.0199], axis: [0, 1, 0]}
+drives: {pull: {joint: rail, velocity: 1}}
+forces:
+  press: {type: applied_load, body: ball, at: [0, 0.0199], direction: [0, -1, 0],
+          force: "100*exp(-((t-0.3)/0.1)**2) + 1"}
+  floor: {type: surface_contact, surface: {body: ground, at: [-0.1, 0]},
+          ball: {body: ball, at: [0, 0.0199], radius: 0.02}}
+contact_laws: {soft: {normal: impact, exponent: 1, stiffness: 1e5, damping: 50, ramp: 1e-9}}
+solver: {end: 0.6 s, tolerance: 1e-8}
+output: {every: 5 ms}
+""",
+    )
+    law = {law.name: law for law in laws(read(path))[0]}["contact.floor"]
+    assert law.visited == (0.0, pytest.approx(101 / 1e5, rel=5e-3))
+    x = float(law.why.split("[")[1].split(",")[0])
+    assert x == pytest.approx(0.1 + 0.3, abs=0.02)
+    depth, force = law.curves["at rest"]
+    assert force == pytest.approx(1e5 * depth)

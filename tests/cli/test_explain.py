@@ -21,8 +21,9 @@ SPECS = list(
 
 @pytest.mark.parametrize("page", EVERYTHING["elements"], ids=lambda page: page["word"])
 def test_example_runs_and_records_what_is_said(page):
-    turns = any(channel["name"] == "NAME.rotation" for channel in page["channels"])
-    every = '["*", "*.rotation"]' if turns else '["*"]'  # the former is not in the latter
+    more = [f"*.{kind}" for kind in ("rotation", "damping_loss")
+            if any(channel["name"] == f"NAME.{kind}" for channel in page["channels"])]  # fmt: skip
+    every = str(["*", *more])  # the others are not in the first
     scenario = loads(page["example"], [f"output.channels={every}"])
     mechanism = assemble(scenario)
     [instance] = [i for i in mechanism.instances if i.element.key == page["word"]]

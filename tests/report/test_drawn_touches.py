@@ -15,6 +15,8 @@ SHAPES = {
     "cylinder": "shape: cylinder, radius: 0.2",
     "hole": "shape: cylinder, radius: 0.6, hollow: true",
     "profile": "shape: profile, points: [[-1, -0.1], [1, -0.1], [1, 0.1], [-1, 0.1]], closed: true",
+    "notch": "shape: profile, closed: true, points: [[-1, -0.4], [1, -0.4], [1, 0.1], [0.5, 0.1], "
+    "[0, -0.1], [-0.5, 0.1], [-1, 0.1]]",
     "plate": "shape: profile, points: [[-1, 0.1], [1, 0.1]]",
 }
 TEXT = """
@@ -58,3 +60,15 @@ def test_a_point_is_drawn_too(tmp_path):
     run = of(tmp_path, text=text)
     _, _, things = made(run, touched)
     assert np.ptp(things["meets ball"].pieces[0][0].points, axis=0).max() > 0.0
+
+
+def test_an_outline_is_drawn_with_its_round_edge(tmp_path):
+    run = validation(tmp_path, "cam_flat_contact", "solver.end=0.1", "output.every=5 ms")
+    _, _, things = made(run, touched)
+    for thing in things.values():
+        closed(thing.pieces[0][0])
+    face = seen(things["face tappet"], things["face tappet"].pieces[0][0].points)[0]
+    assert face[:, 0].min() == pytest.approx(-0.017, abs=1e-4)
+    assert face[:, 0].max() == pytest.approx(0.017, abs=1e-4)
+    assert face[:, 1].min() == pytest.approx(0.03, abs=1e-4)
+    assert face[:, 1].max() == pytest.approx(0.04, abs=1e-4)

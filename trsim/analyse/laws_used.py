@@ -259,7 +259,7 @@ def coefficient(law: Friction, v: float) -> float:
 
 def of_contact(run: Run, scenario: Any, name: str) -> Iterator[Law]:
     """Force over depth, and the friction of its law."""
-    spec = scenario.joints.get(name) or scenario.forces.get(name)
+    spec = scenario.joints.get(name) or scenario.forces.get(name.partition(".")[0])
     steps = run.steps(name)
     if spec is None or not {"penetration", "normal_force"} <= {*steps}:
         return
@@ -275,19 +275,49 @@ def of_contact(run: Run, scenario: Any, name: str) -> Iterator[Law]:
         curves, told = hertzian(law, spec.clearance, depth, fastest), f"{law.normal}, {key}"
         if law.friction.law != "none":
             yield of_friction(run, name, f"contact_laws.{key}.friction.{name}", law.friction)
+    elif hasattr(spec, "surface"):
+        key = spec.contact or next(iter(scenario.contact_laws))
+        law = scenario.contact_laws[key]
+        curves, told = on_surface(spec, law, depth, fastest), f"{law.normal}, {key}"
+        if law.friction.law != "none":
+            yield of_friction(run, name, f"contact_laws.{key}.friction.{name}", law.friction)
     elif hasattr(spec, "ramp"):
         curves, told = stopped(spec, depth, fastest), "stop"
     else:
         return
     yield Law(f"contact.{name}", told, "depth", "normal_force", unit,
               run.contact_unit(name, "normal_force"), curves, None, met, (0.0, deepest),
-              "" if len(met[0]) else "it never touched")  # fmt: skip
+              deepest_at(steps) if len(met[0]) else "it never touched")  # fmt: skip
+
+
+def deepest_at(steps: dict[str, Array]) -> str:
+    """Where a surface was pressed in most, of all steps in touch."""
+    if "place" not in steps:
+        return ""
+    k = int(np.argmax(steps["penetration"]))
+    x, y, z = (float(c) for c in steps["place"][k])
+    place = f"[{x:.5g}, {y:.5g}]" if z == 0.0 else f"[{x:.5g}, {y:.5g}, {z:.5g}]"
+    return f"deepest at {place} m of the surface, at {float(steps['time'][k]):.6g} s"
+
+
+def on_surface(spec: Any, law: Any, depth: Array, fastest: float) -> dict[str, Any]:
+    """The same of a ball on a surface; a damper that fades in has no loop of its own."""
+    surface = spec.surface
+    bend = {"plane": 0.0, "sphere": (-1.0 if surface.hollow else 1.0) / (surface.radius or 1.0)}
+    normal = law.on_surface(spec.ball.radius, bend.get(surface.shape))
+    looped = fastest if law.normal != "impact" else 0.0
+    return impacted(Pair(normal.stiffness, normal.exponent, 0.0, 0, normal.chi), depth, looped)
 
 
 def hertzian(law: Any, clearance: float, depth: Array, fastest: float) -> dict[str, Any]:
-    """The force at rest, and the loop of an impact."""
+    """The force of a joint with clearance at rest, and the loop of an impact."""
     K, n, form, chi, _ = law.normal_numbers(clearance)
-    pair = Pair(K, n, clearance, form, chi)
+    return impacted(Pair(K, n, clearance, form, chi), depth, fastest)
+
+
+def impacted(pair: Pair, depth: Array, fastest: float) -> dict[str, Any]:
+    """The force at rest, and the loop of an impact."""
+    chi = pair.chi
     rest = np.array([elastic.python(d, pair) for d in depth.tolist()])
     energy = np.array([stored.python(d, pair) for d in depth.tolist()])
     share = np.sqrt(np.maximum(0.0, 1.0 - energy / energy[-1]))

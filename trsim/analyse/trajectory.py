@@ -88,7 +88,7 @@ def problem(scenario: Any, patterns: Sequence[str] = ()) -> Problem:
 
 def chosen(mechanism: Any, patterns: Sequence[str]) -> list[Any]:
     """The columns that are compared; a channel's own name is no name of an element."""
-    from trsim.assemble.layout import matches
+    from trsim.assemble.asked import matches
 
     def fits(name: str, pattern: str) -> bool:
         return name == pattern if pattern in names else matches(name, (pattern,))

@@ -240,13 +240,15 @@ def pack(  # type: ignore[no-untyped-def]
         told, known = len(at.notes), len(at.packed_functions)
         try:
             acts = section != "forces" or name not in scenario.resting
-            instance = Instance(section, name, kinds[key], kinds[key].pack(name, spec, at), acts)
+            row = kinds[key].pack(name, spec, at)
         except ScenarioError as error:
             raise error.at(section, name) from None
         except ValueError as error:
             raise ScenarioError(str(error), path=(section, name)) from None
-        instances.append(instance)
-        at.instances[section, name] = instance
+        rows = {name: row} | {f"{name}.{k}": part for k, part in enumerate(row.parts, start=1)}
+        for own, packed in rows.items():
+            instances.append(Instance(section, own, kinds[key], packed, acts))
+            at.instances[section, own] = instances[-1]
         place = scenario.place((section, name))
         line = f"{place.show()}: " if place else ""
         at.packed_functions[known:] = [

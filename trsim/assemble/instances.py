@@ -55,6 +55,11 @@ class Instance:
     acts: bool = True  # False of a force that events have removed, or are still to apply
 
     @property
+    def entry(self) -> str:
+        """The name that it has in its section of the scenario."""
+        return self.name.partition(".")[0] if self.section == "forces" else self.name
+
+    @property
     def channels(self) -> tuple[Channel, ...]:
         """Its channels, each in its own unit."""
         found = self.element.channels if self.row.channels is None else self.row.channels

@@ -1,11 +1,11 @@
 """Which channels a run records, and the columns they stand in."""
 
 from collections.abc import Iterable
-from fnmatch import fnmatchcase
 from typing import Any
 
 import numpy as np
 
+from trsim.assemble.asked import is_asked, matches, points_of
 from trsim.assemble.instances import Column, Instance
 from trsim.assemble.outputs import energy_columns, hear
 from trsim.assemble.sections import N_SECTION
@@ -15,7 +15,6 @@ from trsim.elements.contract import FIRST_ROW, Channel
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
 
-NOT_BY_DEFAULT = ("*.rotation",)
 # units of what is about an axis, and of what is along a line at a distance from it
 ALONG = {"N*m": "N", "rad": "m", "rad/s": "m/s", "rad/s^2": "m/s^2"}
 # powers of mass, size and speed
@@ -45,11 +44,6 @@ def no_outputs(rows: int) -> dict[str, Any]:
     }
 
 
-def matches(name: str, patterns: tuple[str, ...]) -> bool:
-    """Whether a channel is asked for: by name, by pattern, or by the name of its element."""
-    return any(fnmatchcase(name, p) or name.startswith(p + ".") for p in patterns)
-
-
 def all_names(instances: Iterable[Instance], jumps: int) -> list[str]:
     """Every channel one may ask for, and the elements that have some."""
     names = []
@@ -58,16 +52,6 @@ def all_names(instances: Iterable[Instance], jumps: int) -> list[str]:
         channels = [f"{instance.name}.{c.name}" for c in recorded if c.name]
         names += [instance.name, *channels] if channels else []
     return names + [f"energy.{name}" for name in energy_columns(jumps)]
-
-
-def points_of(scenario: Any) -> set[str]:
-    """The channels that sections, portraits and events of a scenario name, with and without a
-    component."""
-    portraits = [(spec.x, spec.y) for spec in scenario.phase_portraits.values()]
-    sections = [(spec.when or "", *spec.plot) for spec in scenario.poincare.values()]
-    named = {channel for group in (*portraits, *sections) for channel in group}
-    named |= {spec.when for spec in scenario.events.values()}
-    return named | {channel[:-2] for channel in named if channel[-2:] in COMPONENTS}
 
 
 def layout(
@@ -81,9 +65,7 @@ def layout(
     width = 0
 
     def asked(name: str) -> bool:
-        if patterns == ("*",):
-            return not matches(name, NOT_BY_DEFAULT)
-        return matches(name, patterns)
+        return is_asked(name, patterns)
 
     def needed(name: str) -> bool:
         return asked(name) or name in shown

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trsim.assemble.asked import is_asked, points_of
 from trsim.assemble.dense import product
 from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
@@ -267,6 +268,11 @@ class Places:
         """The largest arm of a body as drawn so far, or a metre, m."""
         arms = [float(np.linalg.norm(s)) for f, s in self.points if f == i]
         return max(arms, default=0.0) or 1.0
+
+    def asks(self, channel: str) -> bool:
+        """Whether a channel is recorded, or shown by a section, a portrait or an event."""
+        patterns = tuple(self.scenario.output.channels)
+        return is_asked(channel, patterns) or channel in points_of(self.scenario)
 
     def state(self, scale: str | float, follows: int = -1) -> int:
         """A state of an element's own in z: scale for the error norm ('angle', 'stroke', 'speed',

@@ -13,9 +13,10 @@ from trsim.assemble.switches import CHANNEL, LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
 # TWIST: an angle about axes that may lean apart; TRAIN: two angles, each times a radius; SURFACE:
-# the distance from a surface; EDGE: the larger of the strokes of both ends of a line
-UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST, TRAIN, SURFACE, EDGE = range(9)
-RATE_OF = 9  # added to a kind: the rate of such a quantity
+# the distance from a surface; EDGE: the larger of the strokes of both ends of a line; OUTLINE: that
+# of an outline from a surface
+UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST, TRAIN, SURFACE, EDGE, OUTLINE = range(10)
+RATE_OF = 10  # added to a kind: the rate of such a quantity
 KINDS = {
     "": UNKNOWN,
     "arc": UNKNOWN,
@@ -26,8 +27,9 @@ KINDS = {
     "train": TRAIN,
     "surface": SURFACE,
     "edge": EDGE,
+    "outline": OUTLINE,
 }
-UNBOUNDED = (UNKNOWN, TWIST, TRAIN, SURFACE, EDGE)  # kinds whose rates have no bound
+UNBOUNDED = (UNKNOWN, TWIST, TRAIN, SURFACE, EDGE, OUTLINE)  # kinds whose rates have no bound
 
 
 def travels(instances: list[Instance], contacts: list[int], switches: Switches) -> dict[str, Any]:

@@ -247,6 +247,7 @@ class Row:
     leaps: float = 0.0  # N, by how much its force jumps where its coordinate passes zero
     rubs: str = ""  # the joint whose reaction makes its friction
     said: str = ""  # what `check` says of it beside its words in the scenario
+    parts: tuple["Row", ...] = ()  # rows of their own that belong to it: NAME.1, NAME.2, ...
     # of what rubs, for a load of 1: stiffness and damping at rest, 1/m and s/m; the rate at which
     # bristles follow a speed of 1, 1/m
     grips: tuple[float, float, float] = (0.0, 0.0, 0.0)

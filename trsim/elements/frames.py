@@ -45,11 +45,15 @@ class TwoAngles(Pair):
 
 
 class OnSurface(TwoPoints):
-    """Of an element between a surface of body i and a ball around a point of body j."""
+    """Of an element between a surface of body i and a ball around a point of body j, or an outline
+    with a round edge."""
 
     ball: f8  # m, its radius; 0 of a point
     sharp: f8  # m: how its distance from the surface bends, see laws/surfaces.py
     reach: f8
+    span: f8  # m: of an outline, how far its corners are from its point
+    wide: f8  # m: how far the places of a profile are from its origin where an outline meets it
+    bulge: f8  # m: the largest radius of its arcs
 
 
 class Edge(TwoPoints):

@@ -16,6 +16,7 @@ from trsim.fields import Flag, Spec, Unit, point, vector
 from trsim.laws.friction import CODES
 from trsim.laws.profiles import Flaw, profile, smooth
 from trsim.laws.surfaces import CYLINDER, PLANE, SHAPES, SPHERE
+from trsim.laws.touches import touches
 
 SIDE = 1e-6  # of the size of a profile: a centre so near to it is on no side
 OTHERS = {"plane": (), "sphere": ("radius",), "cylinder": ("radius",), "profile": ("points",)}
@@ -28,6 +29,7 @@ ONLY_OF = {
     "smooth": ("profile",),
 }
 SPLINE = 1e-7  # of its size: how far arcs are from a spline through points
+FINE = 1e-8  # the same where a side touches it, whose force follows the radii of the arcs
 
 
 class Surface(Placed):
@@ -77,49 +79,61 @@ class Surface(Placed):
 
 
 class Ball(Spec):
-    """A ball of a body, or a roller whose axis is the z axis of the surface, or a point.
+    """A ball of a body, or a roller whose axis is the z axis of the surface, or a point; or an
+    outline with a round edge.
 
-    body    the body
-    at      its centre, as drawn; a place, or the name of a point
-    radius  0 of a point
+    body     the body
+    at       its centre, as drawn; a place, or the name of a point
+    radius   0 of a point; of an outline that of its edge
+    corners  of an outline, [x, y] from `at` along the axes of the surface, as drawn: centres of its
+             round corners, in their order; two are a straight face
     """
 
     type: ClassVar[str] = "ball"
     body: str
     at: point("m")
     radius: Annotated[float, Ge(0), Unit("m")] = 0.0
+    corners: tuple[Annotated[tuple[float, float], Unit("m")], ...] | None = None
 
 
-def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
-    """The columns that say what a surface is, and its curvature where Hertz's law has one.
+def shapes_of(spec, at, centre) -> tuple[list[dict[str, Any]], float | None]:
+    """The columns that say what a surface is, of each touch it has with its ball, and its curvature
+    where Hertz's law has one.
 
     centre: of the ball, in the axes of the surface.
     """
     surface, r = spec.surface, spec.ball.radius
     code, R = SHAPES[surface.shape], surface.radius or 0.0
     free = -1.0 if surface.hollow else 1.0
-    shaped = {"shape": code, "radius": R, "free": free, "profile": 0, "closed": 0}
+    shaped = {"shape": code, "radius": R, "free": free, "profile": 0, "closed": 0, "seams": -1}
+    shaped |= {"outline": -1, "span": 0.0, "wide": 0.0, "bulge": 0.0}
     if code == PLANE:
-        return {**shaped, "sharp": inf, "reach": inf}, 0.0
+        return [{**shaped, "sharp": inf, "reach": inf}], 0.0
     if code in (SPHERE, CYLINDER):
         if surface.hollow and r >= R:
             what = f"a ball of radius {r:g} m does not fit into one of {R:g} m"
             raise ScenarioError(what, "", ("ball", "radius"))
         bends = {"sharp": inf, "reach": R} if surface.hollow else {"sharp": R, "reach": inf}
-        return {**shaped, **bends}, free / R if code == SPHERE else None
+        return [{**shaped, **bends}], free / R if code == SPHERE else None
+    return [{**shaped, **one} for one in of_profile(spec, at, centre)], None
+
+
+def of_profile(spec, at, centre) -> list[dict[str, Any]]:
+    """What is other than in `shapes_of` of each touch of a profile."""
+    surface, r = spec.surface, spec.ball.radius
     turned = False
     try:
-        side = int(free) if surface.closed else side_of(surface, centre)
+        side = (-1 if surface.hollow else 1) if surface.closed else side_of(surface, centre)
         turned = side < 0 and not surface.closed  # the drawn side is the left one
         if turned:
             surface, side = turned_round(surface), 1
-        found = pieces_of(surface, side)
+        spline = SPLINE if spec.ball.corners is None else FINE
+        found = pieces_of(surface, side, inward=r > 0.0, spline=spline)
+        many = [] if found.reach > r else touches_of(surface, side, r)
     except Flaw as flaw:
-        k = (
-            len(surface.points) - 1 - flaw.point
-            if turned and flaw.point is not None
-            else flaw.point
-        )
+        k = flaw.point
+        if turned and k is not None:
+            k = len(surface.points) - 1 - k
         where = ("points",) if k is None else ("points", k)
         raise ScenarioError(flaw.what, flaw.hint, ("surface", *where)) from None
     if r == 0.0 and found.sharp == 0.0:
@@ -130,31 +144,60 @@ def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
             else ("close the profile and give `corner_radius`, or give the ball a `radius`")
         )
         raise ScenarioError(what, hint, ("ball", "radius"))
-    if not found.reach > r:
-        what = f"a ball of radius {r:g} m touches this profile in two places at once somewhere"
-        hint = f"smaller than {found.reach:.4g} m it touches one; or make a contact for each side"
-        raise ScenarioError(what, hint, ("ball", "radius"))
-    offset = len(at.tab)
-    at.tab.extend(found.numbers)
     body = at.body(surface.body, "surface", "body", near=surface.at, off=1.0)
     for x, y in (found.outline.min(axis=0), found.outline.max(axis=0)):
         at.local(body, surface.frame.moved((float(x), float(y), 0.0)))
-    bends = {"sharp": found.sharp, "reach": found.reach}
-    return {**shaped, **bends, "profile": offset, "closed": int(surface.closed)}, None
+    if not many:
+        bends = {"sharp": found.sharp, "reach": found.reach}
+        return [{**bends, "profile": listed(at, found.numbers), "closed": int(surface.closed)}]
+    part = 2 if surface.closed else 0
+    return [
+        {"free": 1.0, "closed": part, "profile": listed(at, one.numbers), "sharp": one.sharp,
+         "reach": one.reach, "seams": listed(at, seams_of(one))}
+        for one in many
+    ]  # fmt: skip
 
 
-def pieces_of(surface, side):
-    """The profile of a surface, whose free side is as laws/profiles.py has it.  Raises Flaw."""
-    closed, radius = surface.closed, surface.corner_radius
-    return made(surface.points, None if surface.smooth else radius, closed, side)
+def listed(at, numbers) -> int:
+    """Where numbers are in `tab`; -1 of none."""
+    offset = len(at.tab)
+    at.tab.extend(numbers)
+    return offset if numbers else -1
+
+
+def seams_of(one) -> list[float]:
+    """How many seams a touch has, and where; nothing where it has none."""
+    flat = [float(c) for seam in one.seams for c in seam]
+    return [float(len(one.seams)), *flat] if flat else []
+
+
+@lru_cache(maxsize=64)
+def found_touches(points, radius, closed, side, r):
+    """The touches of a profile and a ball that has several with it."""
+    return touches(made(points, radius, closed, side, True), closed, side, r)
+
+
+def touches_of(surface, side, r):
+    """The same of a surface.  Raises Flaw."""
+    radius = None if surface.smooth else surface.corner_radius
+    return found_touches(surface.points, radius, surface.closed, side, r)
+
+
+def pieces_of(surface, side, inward=False, spline=SPLINE):
+    """The profile of a surface, whose free side is as laws/profiles.py has it.  Raises Flaw.
+
+    inward: whether straight sides may meet inwards at an edge; spline: a tolerance.
+    """
+    radius = None if surface.smooth else surface.corner_radius
+    return made(surface.points, radius, surface.closed, side, inward, spline)
 
 
 @lru_cache(maxsize=256)  # a run assembles several times, and looks for how large a ball fits
-def made(points, radius, closed, side):
+def made(points, radius, closed, side, inward=False, spline=SPLINE):
     """The profile through points, straight with a radius at its corners, or else smooth."""
     if radius is None:
-        return smooth(points, closed, side, SPLINE)
-    return profile(points, radius, closed, side)
+        return smooth(points, closed, side, spline)
+    return profile(points, radius, closed, side, inward)
 
 
 def turned_round(surface):
@@ -201,6 +244,9 @@ def side_of(surface, centre):
 
 def check_levers(spec, code, friction):
     """Refuse resistance to rolling and spinning where it has no meaning."""
+    if spec.ball.corners is not None:
+        what = "an outline has no resistance to rolling and spinning"
+        raise ScenarioError(what, "leave the levers out", ("ball", "corners"))
     if code != CODES["modified_coulomb"] or friction[0] == 0.0:
         what = "resistance to rolling and spinning comes in with speed as sliding friction does"
         hint = "take `modified_coulomb`, with `v0`, `v1` and a `coefficient` above 0"

@@ -15,6 +15,10 @@ slowed by moments on both bodies, b_r and b_s the levers of the law, w = omega_j
 
 g is the friction law's part of full friction at a speed.  In flight there is no force whatever the
 gap; a touch is located and latches the approach speed, as in a clearance joint.
+
+Of an outline with a round edge (outlines.py) the centre is its place nearest to the surface.
+Where several places touch at once (laws/touches.py, corners on a plane) each has a row of its own,
+and a row in front of them stands for the whole: it has no force and tells their sum.
 """
 
 from math import inf, sqrt
@@ -39,53 +43,49 @@ from trsim.elements.contract import (
     measured,
 )
 from trsim.elements.frames import (
-    OnSurface,
     arm,
     at_both,
-    carried,
-    cross,
     dot,
     impulses,
     minus,
     plus,
     points,
     push_apart,
-    relative_spin,
     scaled,
     twist_apart,
-    velocity,
 )
-from trsim.elements.surface import Ball, Surface, check_levers, fits_behind, shape_of, thickness
+from trsim.elements.outlines import outlined
+from trsim.elements.surface import Ball, Surface, check_levers, fits_behind, shapes_of, thickness
+from trsim.elements.touching import (
+    CORNERED,
+    Own,
+    acting,
+    is_behind,
+    on_seam,
+    resistance,
+    rolls,
+    slides,
+    touch,
+)
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
-from trsim.kernels.columns import V3, f8, i8, run
 from trsim.kernels.lazy import internal
-from trsim.laws.contact import HERTZ, TABLE, damped, elastic, lossy, stored
+from trsim.laws.contact import HERTZ, TABLE, stored
 from trsim.laws.force_tables import (
     PIECE,
     beyond_piece,
     next_piece,
-    on_piece,
     piece_at,
     piece_of,
     rising,
     rub_of,
     stored_in,
 )
-from trsim.laws.friction import (
-    CODES,
-    N_PARAMETERS,
-    beyond,
-    branch_of,
-    friction_force,
-    neighbour,
-    on_branch,
-    part_of_bristle,
-)
-from trsim.laws.surfaces import PLANE, PROFILE, SPHERE, away, beside
+from trsim.laws.friction import beyond, branch_of, neighbour
+from trsim.laws.surfaces import PLANE, SPHERE
 
-CORNERED = CODES["modified_coulomb"]
 DEEP = 0.2  # of the radius of a ball: deeper than that it is no longer one that touches a surface
+LOSSES = ("damping_loss", "friction_loss")
 
 
 class SurfaceContact(Spec):
@@ -106,62 +106,69 @@ class SurfaceContact(Spec):
     spinning_friction: Annotated[float, Ge(0), Unit("m")] = 0.0
 
 
-class Own(OnSurface):
-    """Of one instance."""
-
-    u_i: V3  # axes of the surface in those of body i
-    w_i: V3
-    a_i: V3
-    shape: i8
-    closed: i8  # 1 of a closed profile
-    profile: i8  # its offset in tab
-    state: i8  # of z: the deflection of bristles along t, that along z behind it; or -1
-    friction_law: i8
-    form: i8  # of the elastic law: that of Hertz, or a table
-    table: i8  # its offset in tab
-    radius: f8  # of the surface, m
-    free: f8  # 1, or -1: inside
-    clearance: f8  # read by other forms
-    stiffness: f8
-    exponent: f8
-    chi: f8
-    damping: f8
-    ramp: f8  # 0 of laws that know the impact
-    slowest_impact: f8
-    rolling: f8  # levers, m
-    spinning: f8
-    friction: run(f8, N_PARAMETERS)
-
-
 # --- packing -----------------------------------------------------------------------------
 
 
 def pack(name, spec, at):
+    """The row of a touch; of several one that stands for them, and theirs as its parts."""
     surface, ball = spec.surface, spec.ball
     if surface.body == ball.body:
         what = f"surface and ball are both on '{ball.body}'"
         raise ScenarioError(what, "name two different bodies", ("ball", "body"))
-    law = at.contact_law(spec.contact)
     i = at.body(surface.body, "surface", "body", near=surface.at, off=1.0)
     j = at.body(ball.body, "ball", "body", near=ball.at)
     frame = surface.frame
-    shaped, curvature = shape_of(spec, at, frame.inside(minus(ball.at, surface.at)))
+    if ball.corners is None:
+        shapes, curvature = shapes_of(spec, at, frame.inside(minus(ball.at, surface.at)))
+    else:
+        shapes, curvature = outlined(spec, at, j), None
+    law = at.contact_law(spec.contact)
     normal = law.on_surface(ball.radius, curvature)
     offset = len(at.tab)
     if law.table is not None:
         at.tab.extend(rising(*law.columns)[0])
+    patch = 0.0
+    if law.stiffness == "hertz":
+        patch = 1.0 / (1.0 / ball.radius + curvature)
+    if spec.rolling_resistance or spec.spinning_friction:
+        check_levers(spec, *law.friction.numbers)
+    own = dict(
+        **points(at, i, j, surface.at, ball.at),
+        u_i=at.axes(i, frame.x), w_i=at.axes(i, frame.y), a_i=at.axes(i, frame.z),
+        ball=ball.radius, form=HERTZ if law.table is None else TABLE, table=offset, clearance=0.0,
+        slowest_impact=law.slowest_impact, touches=0,
+        rolling=spec.rolling_resistance, spinning=spec.spinning_friction, patch=patch,
+    )  # fmt: skip
+    several = len(shapes) > 1
+    rows = [
+        row_of(f"{name}.{k}" if several else name, spec, at, law, normal, {**own, **shaped})
+        for k, shaped in enumerate(shapes, start=1)
+    ]
+    if not several:
+        return rows[0]
+    whole = Own.packed(
+        normal, **{**own, **shapes[0], "touches": len(rows), "rolling": 0.0, "spinning": 0.0},
+        state=-1, lost=-1, friction_law=0, friction=law.friction.numbers[1],
+    )  # fmt: skip
+    return Row(*whole, channels=OF_SEVERAL, parts=tuple(rows))
+
+
+def row_of(name, spec, at, law, normal, numbers):
+    """The row of one touch."""
     code, friction = law.friction.numbers
     state = bristles(spec, law.friction, friction, at)
-    if spec.rolling_resistance or spec.spinning_friction:
-        check_levers(spec, code, friction)
+    lost = -1
+    if any(at.asks(f"{name}.{channel}") for channel in LOSSES):
+        lost = at.state(0.0)
+        at.state(0.0)
     own = Own.packed(
-        normal, **points(at, i, j, surface.at, ball.at), **shaped,
-        u_i=at.axes(i, frame.x), w_i=at.axes(i, frame.y), a_i=at.axes(i, frame.z),
-        ball=ball.radius, state=state, friction_law=code, friction=friction, clearance=0.0,
-        form=HERTZ if law.table is None else TABLE, table=offset,
-        slowest_impact=law.slowest_impact, rolling=spec.rolling_resistance,
-        spinning=spec.spinning_friction,
-    )  # fmt: skip
+        normal, **numbers, state=state, lost=lost, friction_law=code, friction=friction
+    )
+    channels = CHANNELS
+    if numbers["patch"] > 0.0:
+        channels = (*channels, PATCH)
+    if lost >= 0:
+        channels = (*channels, *LOST)
     jump = Own.columns["friction"].at if law.friction.jumps else -1
     contact = Contact(
         normal.stiffness,
@@ -176,8 +183,9 @@ def pack(name, spec, at):
         states=2,
         known_to=inf if law.table is None else law.table[-1][0],
     )
-    states = () if state < 0 else (state, state + 1)
-    return Row(*own, contact, states=states, travel="surface")
+    states = tuple(k for first in (state, lost) if first >= 0 for k in (first, first + 1))
+    travel = "surface" if numbers["outline"] < 0 else "outline"
+    return Row(*own, contact, channels, states=states, travel=travel)
 
 
 def bristles(spec, law, numbers, at):
@@ -197,110 +205,10 @@ def bristles(spec, law, numbers, at):
 # --- kernels -----------------------------------------------------------------------------
 
 
-@internal
-def touch(scene, e):
-    """Arms of the centre on both bodies, s, n in world axes, penetration and its rate."""
-    own, X = Own(scene, e), scene.X
-    r_i, p_j, d, v = carried(scene, e)
-    x, y, z = arm(X, own.i, own.u_i), arm(X, own.i, own.w_i), arm(X, own.i, own.a_i)
-    s, m = away(scene.tab, own, (dot(x, d), dot(y, d), dot(z, d)))
-    n = plus(plus(scaled(m[0], x), scaled(m[1], y)), scaled(m[2], z))
-    return r_i, p_j, s, n, own.ball - s, -dot(n, v)
-
-
-@internal
-def slides(scene, e):
-    """The place of contact seen from both centres of mass, n, d, d', v_t and its size."""
-    V, own = scene.V, Own(scene, e)
-    r_i, p_j, s, n, depth, rate = touch(scene, e)
-    c_i, c_j = minus(r_i, scaled(s, n)), minus(p_j, scaled(s, n))
-    v = minus(velocity(V, own.j, c_j), velocity(V, own.i, c_i))
-    v_t = minus(v, scaled(dot(n, v), n))
-    return c_i, c_j, n, depth, rate, v_t, sqrt(dot(v_t, v_t))
-
-
-@internal
-def pressed(scene, own, depth):
-    """The elastic force; of a table that of the piece that is held."""
-    if own.form != TABLE:
-        return elastic(depth, own)
-    if depth <= 0.0:
-        return 0.0
-    tab, o = scene.tab, own.table
-    k = piece_at(tab, o, depth) if own.branch == WHOLE else piece_of(own.branch)
-    return on_piece(tab, o, k, depth)
-
-
-@internal
-def normal_of(scene, own, depth, rate):
-    """F_n."""
-    F_e = pressed(scene, own, depth)
-    if own.ramp > 0.0:
-        return damped(F_e, depth, rate, own)
-    first = own.impact_speed
-    if first == 0.0:  # not latched yet (UNLOCATED): this approach is the impact
-        first = max(rate, own.slowest_impact)
-    return lossy(F_e, rate, first, own.chi)
-
-
-@internal
-def part_of(own, F_n, speed):
-    """Friction at a speed, N, positive against it; bristles aside."""
-    f = own.friction
-    if own.friction_law == CORNERED and own.branch != WHOLE:
-        return -on_branch(rub_of(own.branch), F_n, speed, f[0], f[1], f[2])
-    F_t, _ = friction_force(own.friction_law, F_n, speed, 0.0, f)
-    return -F_t
-
-
-@internal
-def friction_of(scene, e, F_n, n, v_t, speed):
-    """Friction on body j, world axes, and the rates of both bristles."""
-    own = Own(scene, e)
-    if own.state < 0:
-        by = -part_of(own, F_n, speed) / speed if speed > 0.0 else 0.0
-        return scaled(by, v_t), 0.0, 0.0
-    f, z = own.friction, arm(scene.X, own.i, own.a_i)
-    t = cross(n, z)
-    if own.shape == PLANE:
-        t = arm(scene.X, own.i, own.u_i)
-    w_t, w_z = scene.z[own.state], scene.z[own.state + 1]
-    F_1, rate_1 = part_of_bristle(F_n, dot(t, v_t), speed, w_t, f)
-    F_2, rate_2 = part_of_bristle(F_n, dot(z, v_t), speed, w_z, f)
-    return plus(scaled(F_1, t), scaled(F_2, z)), rate_1, rate_2
-
-
-@internal
-def resistance(scene, e, F_n, n):
-    """Moment on body j against rolling and spinning, world axes, and its power."""
-    own = Own(scene, e)
-    f, w = own.friction, relative_spin(scene.V, own.i, own.j)
-    spin = dot(n, w)
-    roll = minus(w, scaled(spin, n))
-    size, code = sqrt(dot(roll, roll)), own.friction_law
-    by_roll, _ = friction_force(code, F_n, own.ball * size, 0.0, f)
-    by_spin, _ = friction_force(code, F_n, own.ball * spin, 0.0, f)
-    share = own.rolling * by_roll / (f[0] * size) if size > 0.0 else 0.0
-    m = plus(scaled(share, roll), scaled(own.spinning * by_spin / f[0], n))
-    return m, dot(m, w)
-
-
-@internal
-def is_behind(scene, e):
-    """Whether the ball is on the side of an open profile on which it was not drawn: its right."""
-    own = Own(scene, e)
-    if own.shape != PROFILE or own.closed == 1:
-        return False
-    _, _, d, _ = carried(scene, e)
-    x, y = dot(arm(scene.X, own.i, own.u_i), d), dot(arm(scene.X, own.i, own.w_i), d)
-    side, _ = beside(scene.tab, own.profile, 1, x, y)
-    return side < 0.0
-
-
 @kernel
 def force(t, scene, e):
     zd, left, own = scene.zd, scene.left, Own(scene, e)
-    if own.phase == FLIGHT:
+    if own.phase == FLIGHT or own.touches > 0:
         return
     c_i, c_j, n, depth, rate, v_t, speed = slides(scene, e)
     if own.branch != WHOLE:
@@ -308,17 +216,18 @@ def force(t, scene, e):
     if depth <= 0.0 and own.phase != CONTACT:
         return
     # in contact bristles bend whatever rounding makes of a depth of nothing
-    F_n = normal_of(scene, own, depth, rate)
-    F_t, rate_t, rate_z = friction_of(scene, e, F_n, n, v_t, speed)
+    F_n, F_t, bends, (taken, rubbed) = acting(scene, e, (n, depth, rate, v_t, speed))
     push_apart(scene.F, own.i, c_i, own.j, c_j, plus(scaled(F_n, n), F_t))
-    zd[IMPACTS] -= (F_n - pressed(scene, own, depth)) * rate
-    zd[FRICTION] += dot(F_t, v_t)
     if own.state >= 0:
-        zd[own.state], zd[own.state + 1] = rate_t, rate_z
+        zd[own.state], zd[own.state + 1] = bends
     if own.rolling > 0.0 or own.spinning > 0.0:
         m, power = resistance(scene, e, F_n, n)
         twist_apart(scene.F, own.i, own.j, m)
-        zd[FRICTION] += power
+        rubbed += power
+    zd[IMPACTS] += taken
+    zd[FRICTION] += rubbed
+    if own.lost >= 0:
+        zd[own.lost], zd[own.lost + 1] = -taken, -rubbed
 
 
 @kernel
@@ -377,7 +286,7 @@ def corners(t, scene, e):
 @kernel
 def energy(t, scene, e):
     own = Own(scene, e)
-    if own.phase == FLIGHT:
+    if own.phase == FLIGHT or own.touches > 0:
         return
     _, _, _, _, depth, _ = touch(scene, e)
     if own.form == TABLE:
@@ -389,22 +298,50 @@ def energy(t, scene, e):
 @measured
 def measure(t, scene, e, o):
     out, own = scene.out, Own(scene, e)
+    if own.touches > 0:
+        together(scene, e, o)
+        return
     c_i, _, n, depth, rate, v_t, speed = slides(scene, e)
-    F_n, F_t = 0.0, (0.0, 0.0, 0.0)
+    F_n, F_t, rolling = 0.0, (0.0, 0.0, 0.0), 0.0
     if own.phase != FLIGHT and depth > 0.0:
-        F_n = normal_of(scene, own, depth, rate)
-        F_t, _, _ = friction_of(scene, e, F_n, n, v_t, speed)
+        F_n, F_t, _, _ = acting(scene, e, (n, depth, rate, v_t, speed))
+        v = rolls(scene, e)
+        rolling = sqrt(dot(v, v))
     f = plus(scaled(F_n, n), F_t)
     d = minus(c_i, arm(scene.X, own.i, own.p_i))
+    x, y = dot(arm(scene.X, own.i, own.u_i), d), dot(arm(scene.X, own.i, own.w_i), d)
     out[o], out[o + 1] = F_n, sqrt(dot(F_t, F_t))
     out[o + 2], out[o + 3] = sqrt(dot(f, f)), depth
     out[o + 4], out[o + 5] = rate, speed if own.phase == CONTACT else 0.0
-    out[o + 6] = F_n if F_n > 0.0 and is_behind(scene, e) else 0.0
-    out[o + 7] = dot(arm(scene.X, own.i, own.u_i), d)
-    out[o + 8] = dot(arm(scene.X, own.i, own.w_i), d)
-    out[o + 9] = dot(arm(scene.X, own.i, own.a_i), d)
+    out[o + 6] = rolling
+    out[o + 7] = F_n if F_n > 0.0 and is_behind(scene, e) else 0.0
+    out[o + 8] = F_n if F_n > 0.0 and on_seam(scene, own, x, y) else 0.0
+    out[o + 9], out[o + 10] = x, y
+    out[o + 11] = dot(arm(scene.X, own.i, own.a_i), d)
     for c in range(3):
-        out[o + 10 + c] = f[c]
+        out[o + 12 + c] = f[c]
+    more = o + 15
+    if own.patch > 0.0:
+        out[more] = sqrt(own.patch * max(depth, 0.0))
+        more += 1
+    if own.lost >= 0:
+        out[more], out[more + 1] = scene.z[own.lost], scene.z[own.lost + 1]
+
+
+@internal
+def together(scene, e, o):
+    """The channels of a row that stands for several touches."""
+    out, own = scene.out, Own(scene, e)
+    f, deepest, many = (0.0, 0.0, 0.0), -inf, 0
+    for k in range(e + 1, e + 1 + own.touches):
+        _, _, n, depth, rate, v_t, speed = slides(scene, k)
+        deepest = max(deepest, depth)
+        if Own(scene, k).phase != FLIGHT and depth > 0.0:
+            F_n, F_t, _, _ = acting(scene, k, (n, depth, rate, v_t, speed))
+            f, many = plus(f, plus(scaled(F_n, n), F_t)), many + 1
+    out[o], out[o + 1], out[o + 2] = sqrt(dot(f, f)), deepest, many
+    for c in range(3):
+        out[o + 3 + c] = f[c]
 
 
 # --- what others ask -----------------------------------------------------------------------
@@ -435,15 +372,53 @@ def doubts(name, spec, largest):
             f"up to {behind:.3g} N, and is too large to touch it there in one place only; give a "
             "contact for each side of its corners, or a closed profile with `corner_radius`"
         )
+    seam, when_there = largest(f"{name}.force_at_seam")
+    if seam > 0.0:
+        yield (
+            f"forces.{name}: at {when_there:.4g} s the ball was where two touches of the profile "
+            f"meet and was felt by both, with up to {seam:.3g} N each; make the profile two, open "
+            "ones of which each is met where it is drawn"
+        )
     limit = DEEP * r if r > 0.0 else inf
     if depth > min(limit, thickness(surface)):
-        into = f"a ball of radius {r:.3g} m" if r > 0.0 else "a surface so thin"
+        round_ = "a ball" if spec.ball.corners is None else "an edge"
+        into = f"{round_} of radius {r:.3g} m" if r > 0.0 else "a surface so thin"
         yield (
             f"forces.{name}: a penetration of {depth:.3g} m at {when:.4g} s is too deep for "
             f"{into}: the contact is too soft, or the impact too fast, for its law to mean "
             "anything; take a larger `stiffness`"
         )
 
+
+CHANNELS = (
+    Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
+    Channel("friction_force", "N", "size of the friction", least=0.0),
+    Channel("contact_force", "N", "resultant of normal force and friction", least=0.0),
+    Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
+    Channel("penetration_rate", "m/s", "positive while approaching"),
+    Channel("sliding_speed", "m/s", "of the ball on the surface; 0 in flight", least=0.0),
+    Channel(
+        "rolling_speed",
+        "m/s",
+        "of the place of touch along surface and ball, their mean; 0 in flight",
+        least=0.0,
+    ),
+    Channel("force_behind", "N", "normal force of an open profile on its other side", least=0.0),
+    Channel("force_at_seam", "N", "normal force where two touches of a profile meet", least=0.0),
+    Channel("place", "m", "nearest place on the surface, in its axes", 3),
+    Channel("force", "N", "contact force on the body of the ball, world axes", 3),
+)
+PATCH = Channel("patch_radius", "m", "of the circle in which it touches, by Hertz", least=0.0)
+LOST = (
+    Channel("damping_loss", "J", "energy that damping across the surface has taken"),
+    Channel("friction_loss", "J", "energy that friction and rolling resistance have taken"),
+)
+OF_SEVERAL = (
+    Channel("contact_force", "N", "resultant of all its touches", least=0.0),
+    Channel("penetration", "m", "the largest of its touches; minus the free gap otherwise"),
+    Channel("touching", "-", "in how many places it touches", least=0.0),
+    Channel("force", "N", "resultant on the body of the ball, world axes", 3),
+)
 
 ELEMENT = Element(
     key="surface_contact",
@@ -454,19 +429,7 @@ ELEMENT = Element(
     reach=reach,
     judged=lambda _: True,
     doubts=doubts,
-    channels=(
-        Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
-        Channel("friction_force", "N", "size of the friction", least=0.0),
-        Channel("contact_force", "N", "resultant of normal force and friction", least=0.0),
-        Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
-        Channel("penetration_rate", "m/s", "positive while approaching"),
-        Channel("sliding_speed", "m/s", "of the ball on the surface; 0 in flight", least=0.0),
-        Channel(
-            "force_behind", "N", "normal force of an open profile on its other side", least=0.0
-        ),
-        Channel("place", "m", "nearest place on the surface, in its axes", 3),
-        Channel("force", "N", "contact force on the body of the ball, world axes", 3),
-    ),
+    channels=(*CHANNELS, PATCH, *LOST),
     turning=turning,
     slides=(Own.columns["friction_law"].at, Own.columns["friction"].at),
     picture="touch",
@@ -488,7 +451,8 @@ forces:
     surface: {body: ground, shape: plane}
     ball: {body: ball, at: [0, 25 mm], radius: 20 mm}
 contact_laws:
-  rubber: {normal: impact, stiffness: 1e6, damping: 20 N*s/m, ramp: 0.1 mm,
+  rubber: {normal: impact, stiffness: hertz, youngs_modulus: 5 MPa, poisson: 0.49,
+           damping: 20 N*s/m, ramp: 0.1 mm,
            friction: {law: modified_coulomb, coefficient: 0.4, v0: 1e-4 m/s, v1: 1e-3 m/s}}
 gravity: [0, -9.81, 0]
 solver: {end: 0.2 s}

@@ -42,9 +42,21 @@ class Profile(NamedTuple):
     sharp: float  # m, least radius of what is round towards the free side: 0 of an edge
     reach: float  # m, of the largest ball that touches one place only
     outline: Any  # (n, 2) places along it, m
+    pieces: list[tuple[float, ...]]  # in their order, without edges
+    edges: list["Edge"]  # of an open one its beginning and its end are the last two
+    inward: tuple[int, ...] = ()  # pieces behind which it turns to the free side without an arc
 
 
-def profile(points: Any, radius: float, closed: bool, side: int) -> Profile:
+class Edge(NamedTuple):
+    """A place where two pieces meet at an angle, or where an open profile ends."""
+
+    place: Any
+    before: Any  # the direction in which the line comes there; None where it begins
+    after: Any  # and goes on; None where it ends
+    piece: int = -1  # the one in front of it
+
+
+def profile(points: Any, radius: float, closed: bool, side: int, inward: bool = False) -> Profile:
     """The pieces of a line through points whose corners are rounded.
 
     points : (n, 2)      m
@@ -52,6 +64,7 @@ def profile(points: Any, radius: float, closed: bool, side: int) -> Profile:
     closed               whether it goes on from the last point to the first
     side                 1: the free side of an open one is on its left, of a closed one outside;
                          -1: on its right, or inside
+    inward               whether it may turn to the free side without an arc: its reach is then 0
 
     The pieces of a closed one go clockwise, so that outside is on their left.  Raises Flaw.
     """
@@ -69,7 +82,7 @@ def profile(points: Any, radius: float, closed: bool, side: int) -> Profile:
             raise Flaw("the profile crosses itself", "give its points in their order round it")
         if area(p) > 0.0:
             order = order[::-1]
-    return put_together(p[order], order, radius, closed, side)
+    return put_together(p[order], order, radius, closed, side, inward)
 
 
 def area(p: Any) -> float:
@@ -106,7 +119,9 @@ def meets_itself(p: Any) -> bool:
     return False
 
 
-def put_together(p: Any, order: Any, radius: float, closed: bool, side: int) -> Profile:
+def put_together(
+    p: Any, order: Any, radius: float, closed: bool, side: int, inward: bool
+) -> Profile:
     """The pieces of a line whose points are in the right order; `order`: which of those given."""
     import numpy as np
 
@@ -117,7 +132,7 @@ def put_together(p: Any, order: Any, radius: float, closed: bool, side: int) -> 
         k = int(np.argmin(lengths))
         raise Flaw("two neighbours are one place", "leave one of them out", int(order[k]))
     way = ahead / lengths[:, None]
-    cuts, arcs, edges, sharp = np.zeros(n), {}, [], inf
+    cuts, arcs, edges, sharp, inner = np.zeros(n), {}, [], inf, []
     for k in range(n) if closed else range(1, n - 1):
         cross = float(way[k - 1][0] * way[k][1] - way[k - 1][1] * way[k][0])
         angle = acos(min(max(float(way[k - 1] @ way[k]), -1.0), 1.0))
@@ -129,12 +144,15 @@ def put_together(p: Any, order: Any, radius: float, closed: bool, side: int) -> 
         round_outside = cross < 0.0
         if round_outside == (side > 0):
             sharp = min(sharp, radius)
+        elif radius == 0.0 and inward:
+            inner.append((k or n) - 1)
+            continue
         elif radius == 0.0:
             what = "the profile turns inwards there, and a ball would touch both of its sides"
             hint = "give `corner_radius`, more than the ball's, or a contact for each side"
             raise Flaw(what, hint, int(order[k]))
         if radius == 0.0:
-            edges.append((p[k], way[k - 1], way[k]))
+            edges.append(Edge(p[k], way[k - 1], way[k], (k or n) - 1))  # no arcs: a piece a side
             continue
         cuts[k] = radius * tan(0.5 * angle)
         inwards = (way[k] - way[k - 1]) / np.linalg.norm(way[k] - way[k - 1])
@@ -151,18 +169,27 @@ def put_together(p: Any, order: Any, radius: float, closed: bool, side: int) -> 
         if left > SAME * size:
             pieces.append((STRAIGHT, *(p[k] + cuts[k] * way[k]), *way[k], left, 0.0))
     if not closed:
-        edges += [(p[0], None, way[0]), (p[-1], way[-1], None)]
+        edges += [Edge(p[0], None, way[0]), Edge(p[-1], way[-1], None, len(pieces) - 1)]
         sharp = 0.0
-    return finished(pieces, edges, sharp, side)
+    made = finished(pieces, edges, sharp, side)
+    return made._replace(reach=0.0, inward=tuple(inner)) if inner else made
 
 
-def finished(pieces: list[tuple[float, ...]], edges: list[Any], sharp: float, side: int) -> Profile:
-    """The profile of pieces one behind the other, and of places where they meet at an angle: each
-    with the directions in which the line comes there and goes on, None beyond an end."""
+def finished(
+    pieces: list[tuple[float, ...]], edges: list[Edge], sharp: float, side: int
+) -> Profile:
+    """The profile of pieces one behind the other, and of places where they meet at an angle."""
     places, normals = sampled(pieces)
-    reach = min(fits(places, side * normals), fits_on_edges(edges, places))
-    pieces = [*pieces, *((EDGE, *place, 0.0, 0.0, 0.0, 0.0) for place, _, _ in edges)]
-    return Profile(grouped(pieces), sharp, reach, places)
+    if not edges and all(piece[0] in (STRAIGHT, ROUND if side > 0 else HOLLOW) for piece in pieces):
+        reach = inf  # outside of what is convex
+    else:
+        reach = min(fits(places, side * normals), fits_on_edges(edges, places))
+    return Profile(numbers_of(pieces, edges), sharp, reach, places, pieces, edges)
+
+
+def numbers_of(pieces: list[tuple[float, ...]], edges: list[Edge]) -> list[float]:
+    """The numbers of laws/surfaces.py of pieces and edges."""
+    return grouped([*pieces, *((EDGE, *edge.place, 0.0, 0.0, 0.0, 0.0) for edge in edges)])
 
 
 def grouped(pieces: list[tuple[float, ...]]) -> list[float]:
@@ -197,14 +224,14 @@ def ends_of(piece: tuple[float, ...]) -> list[Any]:
     return [at + a * (u * ray + v * aside * across) for u in (d, 1.0) for v in (-1.0, 1.0)]
 
 
-def fits_on_edges(edges: list[Any], places: Any) -> float:
+def fits_on_edges(edges: list[Edge], places: Any) -> float:
     """The same of balls that touch an edge, whose normals are a fan: half the way to what lies in
     it."""
     import numpy as np
 
-    least, size = inf, float(np.linalg.norm(np.ptp(places, axis=0)))
-    all_places = np.vstack([places, *(place for place, _, _ in edges)])
-    for place, before, after in edges:
+    least, all_places = inf, np.vstack([places, *(edge.place for edge in edges)])
+    size = float(np.linalg.norm(np.ptp(all_places, axis=0)))
+    for place, before, after, _ in edges:
         d = all_places - place
         far = np.linalg.norm(d, axis=1)
         seen = far > NEXT * size
@@ -257,7 +284,8 @@ def smooth(points: Any, closed: bool, side: int, tolerance: float) -> Profile:
         raise Flaw("the profile crosses itself", "give its points in their order round it")
     rounds = [one[3] for one in pieces if one[0] == (ROUND if side > 0 else HOLLOW)]
     ends = [spline(u, 1) / np.linalg.norm(spline(u, 1)) for u in (nodes[0], nodes[-1])]
-    edges = [] if closed else [(p[0], None, ends[0]), (p[-1], ends[1], None)]
+    last = len(pieces) - 1
+    edges = [] if closed else [Edge(p[0], None, ends[0]), Edge(p[-1], ends[1], None, last)]
     return finished(pieces, edges, min(rounds, default=inf) if closed else 0.0, side)
 
 
@@ -342,32 +370,51 @@ def sampled(pieces: list[tuple[float, ...]]) -> tuple[Any, Any]:
     """Places along the pieces, and the normals there that have the line on their right."""
     import numpy as np
 
-    lengths = [one[5] if one[0] == STRAIGHT else 2.0 * one[3] * acos(one[6]) for one in pieces]
-    places, normals = [], []
+    places, normals = zip(*blocks(pieces), strict=True)
+    return np.vstack(places), np.vstack(normals)
+
+
+def blocks(pieces: list[tuple[float, ...]], step: float = 0.0) -> list[tuple[Any, Any]]:
+    """The same of each piece, from its beginning to its end; step: how far apart, m."""
+    import numpy as np
+
+    lengths, found = [length_of(piece) for piece in pieces], []
+    whole = sum(lengths)
     for (kind, x, y, a, b, c, d), length in zip(pieces, lengths, strict=True):
-        part = np.linspace(0.0, 1.0, max(int(SAMPLES * length / sum(lengths)), LEAST))
+        many = length / step if step else SAMPLES * length / whole
+        part = np.linspace(0.0, 1.0, max(int(many), LEAST))
         if kind == STRAIGHT:
-            places.append(np.array([x, y]) + part[:, None] * length * np.array([a, b]))
-            normals.append(np.tile([-b, a], (len(part), 1)))
+            places = np.array([x, y]) + part[:, None] * length * np.array([a, b])
+            found.append((places, np.tile([-b, a], (len(part), 1))))
             continue
         out = 1.0 if kind == ROUND else -1.0
         turns = np.arctan2(c, b) + out * acos(d) * (1.0 - 2.0 * part)
         ray = np.column_stack([np.cos(turns), np.sin(turns)])
-        places.append(np.array([x, y]) + a * ray)
-        normals.append(out * ray)
-    return np.vstack(places), np.vstack(normals)
+        found.append((np.array([x, y]) + a * ray, out * ray))
+    return found
+
+
+def length_of(piece: tuple[float, ...]) -> float:
+    """How long a piece is, m."""
+    return piece[5] if piece[0] == STRAIGHT else 2.0 * piece[3] * acos(piece[6])
 
 
 def fits(places: Any, normals: Any) -> float:
     """Radius of the largest ball that touches a profile in one place only, wherever it does."""
+    return float(least_balls(places, normals).min(initial=inf))
+
+
+def least_balls(places: Any, normals: Any) -> Any:
+    """The same of the ball at each of the places, in the direction of its normal."""
     import numpy as np
 
-    least, size = inf, float(np.linalg.norm(np.ptp(places, axis=0)))
-    for place, normal in zip(places, normals, strict=True):
+    size = float(np.linalg.norm(np.ptp(places, axis=0)))
+    found = np.full(len(places), inf)
+    for k, (place, normal) in enumerate(zip(places, normals, strict=True)):
         d = places - place
         square = np.einsum("ij,ij->i", d, d)
         above = d @ normal
         seen = (above > LEVEL * np.sqrt(square)) & (square > (NEXT * size) ** 2)
         if seen.any():
-            least = min(least, float((square[seen] / (2.0 * above[seen])).min()))
-    return least
+            found[k] = (square[seen] / (2.0 * above[seen])).min()
+    return found

@@ -7,7 +7,7 @@
 
 p = (x, y, z) is in the axes of the surface, s > 0 on its free side; the unit normal n = grad s
 points there.  A hollow sphere, cylinder or closed profile is free inside: s and n change their
-signs.  An open profile is a thin plate, free on both sides.
+signs.  An open profile is a thin plate, free on both sides; and so is a part of a closed one.
 
 s is 1-Lipschitz, and as long as one place alone is nearest its second derivatives lie between
 
@@ -51,7 +51,7 @@ def away(tab, own, p):
                          radius   R of a sphere or a cylinder, m
                          free     1, or -1 of what is free inside
                          profile  offset in tab
-                         closed   1 of a closed profile
+                         closed   1 of a closed profile, 2 of a part of one
     p : (3) float        m
 
     Returns
@@ -116,6 +116,6 @@ def off_piece(tab, place, closed, x, y):
     if a * tab[place + 4] + b * tab[place + 5] < (tab[place + 6] - ROUNDING) * far:
         return inf, inf, 1.0, 0.0
     out, off = 1.0 if kind == ROUND else -1.0, far - tab[place + 3]
-    if closed == 0 and out * off < 0.0:
+    if closed != 1 and out * off < 0.0:
         out = -out
     return abs(off), out * off, out * a / far, out * b / far

@@ -79,7 +79,7 @@ def outline(surface: Surface) -> Array:
     """Places [x, y] along a profile or round a cylinder, no more than are seen."""
     if surface.shape == "cylinder":
         return circle(surface.radius or 0.0, CORNERS)
-    places = pieces_of(surface, -1 if surface.hollow else 1).outline
+    places = pieces_of(surface, -1 if surface.hollow else 1, inward=True).outline
     along = np.diff(places, axis=0)
     places, along = places[np.append(True, np.linalg.norm(along, axis=1) > 0.0)], along
     kept = [0]
@@ -94,6 +94,26 @@ def outline(surface: Surface) -> Array:
 def ball_mesh(spec: Any, look: Look) -> Mesh:
     """The ball in its place; in a flat mechanism a roller."""
     ball, radius = spec.ball, spec.ball.radius or POINT * look.radius
+    if ball.corners is not None:
+        axes = axes_of(spec.surface)
+        return plate(rounded(np.array(ball.corners), radius), look.thick, axes).moved(
+            np.array(ball.at)
+        )
     if look.normal is None:
         return solids.ball(radius).moved(np.array(ball.at))
     return solids.cylinder(radius, look.thick, look.normal).moved(np.array(ball.at))
+
+
+def rounded(corners: Array, radius: float) -> Array:
+    """Places [x, y] along a convex outline with a round edge."""
+    x, y = (corners - corners.mean(axis=0)).T
+    if np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) < 0.0:
+        corners = corners[::-1]
+    ways = np.roll(corners, -1, axis=0) - corners
+    turns = np.arctan2(ways[:, 1], ways[:, 0]) - 0.5 * np.pi  # of the normals of the sides
+    found = []
+    for k, corner in enumerate(corners):
+        turn = np.mod(turns[k] - turns[k - 1], 2.0 * np.pi)
+        u = turns[k - 1] + turn * np.linspace(0.0, 1.0, 2 + int(CORNERS * turn / (2.0 * np.pi)))
+        found.append(corner + radius * np.column_stack([np.cos(u), np.sin(u)]))
+    return np.vstack(found)

@@ -205,8 +205,8 @@ def of_elements(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
 
     for instance in mechanism.instances:
         entries = getattr(scenario, instance.section, {})
-        if instance.name in entries:
-            yield from instance.element.doubts(instance.name, entries[instance.name], largest)
+        if instance.entry in entries and not instance.row.parts:
+            yield from instance.element.doubts(instance.name, entries[instance.entry], largest)
             yield from beyond_law(instance, *largest(f"{instance.name}.penetration", signed=True))
 
 

@@ -12,6 +12,7 @@ With d the separation of their points p_i and p_j, and u = R_i^T d what frame i 
     train      |c_1| and |c_2| times those of two angles                      gear_mesh.py
     surface    |g'| <= |u'|                 -|u''| - |u'|^2 / (sharp + s) <= g''
                g = ball - s                      g'' <= |u''| + |u'|^2 / (reach - s)   surfaces.py
+    outline    that of convex bodies                                       spread_outlines.py
     edge       |g'| <= that of one end + Omega l         g'' >= likewise; it may turn round at once,
                and has no bound above                                                  seal.py
 
@@ -33,7 +34,17 @@ import numpy as np
 
 from trsim.assemble.dense import inverse
 from trsim.assemble.equations import call_one
-from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, EDGE, SURFACE, TRAIN, TWIST, UNKNOWN
+from trsim.assemble.travel import (
+    ANGLE,
+    CLOCK,
+    DISTANCE,
+    EDGE,
+    OUTLINE,
+    SURFACE,
+    TRAIN,
+    TWIST,
+    UNKNOWN,
+)
 from trsim.elements.contract import Pair
 from trsim.elements.frames import (
     Edge,
@@ -57,6 +68,7 @@ from trsim.solve.march.calls import (
     call_control,
     call_interpolate,
 )
+from trsim.solve.march.spread_outlines import of_outline
 from trsim.solve.methods.displacements import first_of
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
@@ -238,6 +250,8 @@ def spread(s, r, b, what, sign, part):
     _, p_i, _, p_j = two_points(s, e)
     round_i, round_j = bend_i + spin_i * spin_i, bend_j + spin_j * spin_j
     bend = away + round_i * sqrt(dot(p_i, p_i)) + round_j * sqrt(dot(p_j, p_j))
+    if kind == OUTLINE:
+        return of_outline(s, e, sign, length, bend, (of_i, of_j))
     return over_edge(s, what, sign, from_points(s, what, sign, length, bend, of_i), of_i, of_j)
 
 
@@ -443,5 +457,8 @@ def spread_at_stages(s, r, b, what, sign):
         two = TwoAngles(s, e)
         of_2 = of_angle(at_stages(s, r, b, two.i_2), at_stages(s, r, b, two.j_2))
         return of_train(s, e, of_angle(of_i, of_j), of_2)
-    bounds = from_points(s, what, sign, b.h, apart_at_stages(s, b, e, of_i, of_j), of_i)
+    bend = apart_at_stages(s, b, e, of_i, of_j)
+    if kind == OUTLINE:
+        return of_outline(s, e, sign, b.h, bend, (of_i, of_j))
+    bounds = from_points(s, what, sign, b.h, bend, of_i)
     return over_edge(s, what, sign, bounds, of_i, of_j)
