@@ -33,7 +33,7 @@ from trsim.solve.simulate import simulate
 
 from .extremes import beyond
 from .reference import Channel, Crossing, Truth, size
-from .scene import Event, Limit, Scene, Section, Wall
+from .scene import Event, Limit, Scene, Seal, Section, Touch, Wall
 
 EASY, WHOLE = 20.0, 1.0
 TIMES, STATED, DEPTH = 100.0, 10.0, 10.0
@@ -292,7 +292,7 @@ def parted(scene: Scene, t: Truth, r: Ran, tolerance: float) -> float:
 
 def touching(scene: Scene) -> set[str]:
     """The names of what is touched."""
-    names = {f.name for f in scene.forces if isinstance(f, (Wall, Limit))}
+    names = {f.name for f in scene.forces if isinstance(f, (Wall, Limit, Touch, Seal))}
     return names | {j.name for j in scene.joints if j.clearance is not None}
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yaml
 
-from .joints import FAMILIES
+from .surfaces import FAMILIES
 from .judge import RIGHT, TIMES, TOLD, UNJUDGED, WRONG, Verdict, judged, ran
 from .trial import cautious, made, true
 

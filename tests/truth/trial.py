@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from .families import ENGINE, INVALID, ONE, RIGID, TIGHT_RUN, Drawn
-from .joints import FAMILIES
+from .surfaces import FAMILIES
 from .judge import (
     BROKEN,
     CRASH,

@@ -363,7 +363,9 @@ def build(
         scale=scale,
         contact=np.array(contacts, np.int64),
         contact_par=contact_numbers(at, instances, contacts, arms),
-        contact_state=np.array([i.row.contact.state for i in instances if i.row.contact], np.int64),
+        contact_state=np.array(
+            [i.row.contact.reset for i in instances if i.row.contact], np.int64
+        ).reshape(-1, 2),
         contact_angle=np.array([eccentricity(instances[e].element) for e in contacts], np.int64),
         contact_width=np.array(
             [sum(c.size for c in instances[e].channels) for e in contacts], np.int64

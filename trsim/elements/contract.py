@@ -166,10 +166,16 @@ class Contact(NamedTuple):
     clearance: float  # m, of a journal in its bearing; inf where the contact is none
     slowest_impact: float  # m/s
     damping: float  # chi: of the elastic force at the rate at which the contact began
-    state: int = -1  # entry of z that a touch sets to zero
+    state: int = -1  # first entry of z that a touch sets to zero
     slope: float = 0.0  # s/m, of its coefficient of friction over the speed, at rest
     jump: int = -1  # column of par with the coefficient of a friction that jumps at rest
     radius: float = 0.0  # m, of the bearing of a journal
+    states: int = 1  # how many entries of z a touch sets to zero
+
+    @property
+    def reset(self) -> tuple[int, int]:
+        """The first of these entries and the end of them."""
+        return self.state, self.state + self.states if self.state >= 0 else -1
 
 
 class ContactNumbers(Columns, par="contact_par"):

@@ -108,7 +108,7 @@ class Model(Packed):
     scale: A1  # (n_y) lever or magnitude that goes with it
     contact: I1  # (n_contacts) row e of each element with a gap
     contact_par: A2  # (n_contacts, 7) ContactNumbers of contract.py
-    contact_state: I1  # (n_contacts) entry of z to reset at a touch, or -1
+    contact_state: I2  # (n_contacts, 2) entries of z to reset at a touch: the first one or -1, end
     contact_width: I1  # (n_contacts) its output columns
     contact_angle: I1  # (n_contacts) among them: first of the eccentricity's two, or -1
     wanted: I1  # (N) first output column of a row, or -1

@@ -169,6 +169,7 @@ def pack(name, spec, at):
         state,
         law.friction.slope,
         jump,
+        states=2,
     )
     states = () if state < 0 else (state, state + 1)
     return Row(*own, contact, states=states, travel="surface")

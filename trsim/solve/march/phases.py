@@ -70,8 +70,8 @@ def change_phases(s, r, b, setting, t1):
             speed = max(r.gap[c, 1], own.slowest_impact)
             memory.impact_speed = speed
             look(s, c)
-            if s.contact_state[c] >= 0:
-                r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
+            for k in range(s.contact_state[c, 0], s.contact_state[c, 1]):
+                r.y[s.n_q + s.n_v + k] = 0.0
             speed = max(speed, 1e-12)
             h = min(h, hertz_step(own.stiffness, own.exponent, own.mass, speed, setting.step_error))
         else:
