@@ -191,5 +191,67 @@ def surface_contact(rng: Any) -> Drawn:
     fast = np.sqrt(law.K * (1.5 if law.exponent > 1 else 1) * (0.01 * max(f.ball, 0.1)) ** (law.exponent - 1) / m)
     dressed(rng, s, 2 * fast, methods=(*OWN_EVENTS, "scipy:RK45"), tight=-9.0)
     if f.shape == "ellipse":
-        s.tolerance = max(s.tolerance, 1e-5)
+        s.tolerance = max(s.tolerance, 1e-4)
+    return Drawn(s)
+
+
+@family
+def seal(rng: Any) -> Drawn:
+    """A lid or a free body with a strip that is pressed against a plane, which may move too."""
+    flat = bool(rng.random() < 0.3)
+    kind = pick(rng, "lid", "lid", "free", "door", "slide")
+    s = Scene(end=1.0, flat=flat)
+    level = np.array([1, 1, 0.0]) if flat else np.ones(3)
+    spins = np.array([0, 0, 1.0]) if flat else np.ones(3)
+    m, v, l = decades(rng, 0.3, 3.0), decades(rng, 0.1, 2.0), between(rng, 0.4, 1.2)
+    Q = about(Z, between(rng, 0, 6.28)) if flat else rotation(rng)
+    x, n = Q[0], Q[1]
+    tilt = pick(rng, 0.0, between(rng, -0.3, 0.3))
+    along = l * (np.cos(tilt) * x + np.sin(tilt) * n)
+    height = decades(rng, 3e-3, 0.1) * l
+    i = "ground"
+    if kind == "door":
+        s.bodies.append(Body("base", decades(rng, 1, 5), bar_inertia(3.0, X, 0.3), 0.3 * n - 0.2 * x))
+        s.joints.append(Joint("pivot", "revolute", "ground", "base", np.zeros(3), Z if flat else direction(rng)))
+        i = "base"
+    least = max(-along @ n, 0.0)
+    begin = n * (height * between(rng, 0.3, 1.3) + least) - 0.3 * l * x
+    begin = begin + (0 if flat else 0.1 * Q[2])
+    middle = begin + 0.5 * along + 0.1 * l * direction(rng) * level
+    s.bodies.append(Body("lid", m, bar_inertia(m, along, 0.2) if flat or rng.random() < 0.5
+                         else any_inertia(rng, m, l), middle))  # fmt: skip
+    deep = height * between(rng, 0.2, 1.0)
+    e = pick(rng, 1.0, 1.2, 1.5, between(rng, 1.0, 3.0))
+    load = m * v * v / l / (0.3 * height) * (e + 1) * decades(rng, 0.5, 5.0)
+    f = Seal("seal", i, "lid", np.zeros(3), n, begin, begin + along, height, load, deep, e)
+    if rng.random() < 0.5:
+        f.at = 0.7 * x + (0 if flat else 0.3 * Q[2])
+    f.damping = pick(rng, 0.0, deep / v * decades(rng, 0.03, 1.0))
+    f.friction = pick(rng, 0.0, between(rng, 0.1, 1.0))
+    f.full = v * decades(rng, 0.02, 0.3)
+    if rng.random() < 0.3:
+        f.springs = int(rng.integers(1, 9))
+    s.forces.append(f)
+    if kind == "lid":
+        s.joints.append(Joint("hinge", pick(rng, "revolute", "revolute", "spherical"), "ground", "lid",
+                              begin - 0.1 * l * x * pick(rng, 1, -12) + 0.1 * n,
+                              Z if flat else (Q[2] if rng.random() < 0.7 else direction(rng))))  # fmt: skip
+        if s.joints[-1].type == "spherical":
+            s.joints[-1].axis = None
+        elif rng.random() < 0.6:
+            s.sensors.append(Sensor("turn", "hinge"))
+    if kind == "slide":
+        a = n + 0.7 * direction(rng) * level
+        s.joints.append(Joint("rail", "prismatic", "ground", "lid", middle, a / np.linalg.norm(a)))
+    if rng.random() < 0.6:
+        s.forces.append(Spring("back", "ground", "lid", middle - 0.8 * n, middle, m * v * v / l**2 * 10,
+                               0.0, 0.5))  # fmt: skip
+    g = v * v / (2 * height) * between(rng, 0.1, 1.0)
+    if rng.random() < 0.7:
+        s.gravity = -g * n if rng.random() < 0.5 else g * direction(rng) * level
+    given(s, [np.r_[(-n * v * between(rng, 0.2, 1) + 0.5 * v * rng.normal(size=3)) * level,
+                    v / l * rng.normal(size=3) * spins * pick(rng, 0.2, 1.0)] for _ in s.bodies])  # fmt: skip
+    s.end = between(rng, 0.3, 2.0) * l / v
+    fast = np.sqrt(load * l * e / deep * (height / deep) ** (e - 1) / m)
+    dressed(rng, s, 3 * fast, methods=(*OWN_EVENTS, "scipy:RK45"), tight=-9.0)
     return Drawn(s)

@@ -65,8 +65,13 @@ def from_parts(table, first, last, closed, x, y):
 @compiled
 def from_ellipse(a, b, x, y):
     """The signed distance from an ellipse and the unit vector away from it."""
-    # nearest place (a cos u, b sin u): its slope along the ellipse vanishes
-    u = np.arctan2(a * y, b * x)
+    # nearest place (a cos u, b sin u): its slope along the ellipse vanishes; inside there are four
+    u, least = 0.0, 1e300
+    for k in range(64):
+        turn = 2 * np.pi * k / 64
+        far = (x - a * np.cos(turn)) ** 2 + (y - b * np.sin(turn)) ** 2
+        if far < least:
+            u, least = turn, far
     for _ in range(60):
         c, s = np.cos(u), np.sin(u)
         f = (b * b - a * a) * c * s + a * x * s - b * y * c
