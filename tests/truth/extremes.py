@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .reference import APART, Smooth, Truth
-from .scene import Scene, Touch
+from .scene import Scene, Seal, Touch
 
 FEWEST = 5  # ends of steps in a stretch whose polynomials say anything
 AROUND, APART_BY = 20, 0.3  # ends; of their mean distance: nearer ones say nothing more
@@ -40,7 +40,7 @@ def beyond(
         for f in scene.forces
         if isinstance(f, Touch) and f.shape in ("polygon", "line", "ellipse")
         for word in ("penetration", "penetration_rate")
-    }
+    } | {f"{f.name}.compression" for f in scene.forces if isinstance(f, Seal)}
     for name, c in t.channels.items():
         if name not in r.extremes or (loose and c.kind in ("force", "moment")):
             continue
