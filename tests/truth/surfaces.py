@@ -255,5 +255,5 @@ def seal(rng: Any) -> Drawn:
     fast = np.sqrt(load * l * e / deep * (height / deep) ** (e - 1) / m)
     dressed(rng, s, 3 * fast, methods=(*OWN_EVENTS, "scipy:RK45"), tight=-9.0)
     if f.friction or f.springs:  # kinks of single places, which nothing locates
-        s.tolerance = max(s.tolerance, 3e-8)
+        s.tolerance = min(max(s.tolerance, 1e-5), 1e-3)
     return Drawn(s)
