@@ -41,7 +41,8 @@ SURE = 3.0  # times how far the reference is sure, beside its bound
 RIGHT, WRONG, REFUSED, TOLD = "right", "WRONG", "refused", "told"
 UNJUDGED, CRASH = "unjudged", "CRASH"
 BROKEN = "BROKEN"  # the generator itself
-MEANS_NOTHING = "for its law to mean anything"  # of a contact that is pressed too deep
+# of a contact that is pressed too deep, of a seal
+MEANS_NOTHING = re.compile("for its law to mean anything|its line went through the plane")
 LEAST = 1e-9  # bound of what is closed to rounding
 
 
@@ -200,8 +201,8 @@ def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
         worst += beyond(scene, t, r, float(bound.max()), top, share)
     v.ratio, v.what = max(worst, key=lambda x: x[0] if x[0] == x[0] else np.inf)
     v.grazing = len(t.grazing) + int(t.until < np.inf)
-    if not v.ratio <= 1.0 and any(MEANS_NOTHING in text for text in r.warnings):
-        v.verdict, v.why = TOLD, MEANS_NOTHING
+    if not v.ratio <= 1.0 and any(MEANS_NOTHING.search(text) for text in r.warnings):
+        v.verdict, v.why = TOLD, MEANS_NOTHING.pattern
     elif not v.ratio <= 1.0:
         v.verdict = WRONG
     elif v.reach < 0.1:
