@@ -130,6 +130,8 @@ class Path:
             )
         place = self.directed(place)
         self.looks.hold_all(place)
+        if not eq.rubs:  # on the pieces ahead
+            place = eq.place(0.0, place.y, place.lam) or place
         self.looks.directions(place)
         out = self.results.out(place, place.v * 0.0) if self.hears else None
         for k, (x, _) in enumerate(self.looks.values(place, out)):
