@@ -8,7 +8,7 @@ from tests.solve.test_static_path import events, path
 
 G = 9.81
 USER = 5
-# a rod of 2 kg at 0.2 m: k phi - T0 + 2 g 0.2 cos phi is what a hand gives, and a load what it takes
+# a rod of 2 kg at 0.2 m: k phi - T0 + 2 g 0.2 cos phi is what a hand gives and a load takes
 ROD = """
 bodies:
   rod: {mass: 2 kg, inertia: [0.01, 0.02, 0.05], at: [FAR2, FAR]}
@@ -26,7 +26,9 @@ events:
 PUSH = 'push: {type: applied_load, body: rod, torque: "3*max(t - 0.5, 0)", direction: [0, 0, 1]}'
 
 
-def rod(load="", when="hand.force", k=20, T0=8, bodies="ground, rod", motion='position: "t"', far=0):
+def rod(
+    load="", when="hand.force", k=20, T0=8, bodies="ground, rod", motion='position: "t"', far=0
+):
     found = ROD.replace("BODIES", bodies).replace("MOTION", motion).replace("LOAD", load)
     found = found.replace("WHEN", when).replace("K", str(k)).replace("T0", str(T0))
     return found.replace("FAR2", str(far + 0.2)).replace("FAR", str(far))

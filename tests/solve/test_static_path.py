@@ -445,7 +445,10 @@ def test_redundant_hinges_share_alike():
 @pytest.mark.parametrize(
     "more, said",
     [
-        ("events: {e: {when: t, value: 0.1, do: {lock: [hinge]}}}", "events that record, end a run"),
+        (
+            "events: {e: {when: t, value: 0.1, do: {lock: [hinge]}}}",
+            "events that record, end a run",
+        ),
         ("events: {e: {when: t, value: 0.1, do: {release: [hinge]}}}", "or let a drive go"),
         ("poincare: {p: {when: turn, plot: [turn, turn.rate]}}", "a section of a motion"),
     ],

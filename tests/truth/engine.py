@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate._ivp import dop853_coefficients as tableau
 
+from .touches import BALLS as BALL_RADIUS
 from .touches import (
     BRISTLES,
     LAW,
@@ -30,11 +31,10 @@ from .touches import (
     sealed,
     sliding,
 )
-from .touches import BALLS as BALL_RADIUS
 from .touches import DAMPING as LOSS
-from .touches import K as STIFFNESS
 from .touches import RAMP as RAMP_OF
 from .touches import STATE as BRISTLE
+from .touches import K as STIFFNESS
 from .vectors import compiled, cross, dot, into, minus, out_of, plus, smooth, three, times
 
 A = np.ascontiguousarray(tableau.A[:12, :12])
@@ -46,9 +46,20 @@ E5 = np.ascontiguousarray(tableau.E5[:12])
 # rows of constraints: two bodies, arms or directions in them, a component or a coordinate
 POINT, ACROSS, ALONG, DISTANCE, ANGLE = range(5)
 # forces
-FORCE, TORQUE, SPRING, TORSION, BUSHING, WALL, LIMIT, SOFT_DRIVE, SOFT_LINE, CLEARANCE, TOUCH, SEAL = range(
-    12
-)
+(
+    FORCE,
+    TORQUE,
+    SPRING,
+    TORSION,
+    BUSHING,
+    WALL,
+    LIMIT,
+    SOFT_DRIVE,
+    SOFT_LINE,
+    CLEARANCE,
+    TOUCH,
+    SEAL,
+) = range(12)
 # functions of time or of a coordinate
 CONSTANT, SINE, CUBIC, RAMP, BOX, TENT, BELL, TABLE, PULSES = range(9)
 # what is watched: the time, a coordinate, its rate, the gap of a force, a train of pulses

@@ -1,4 +1,4 @@
-"""Numbers of contacts with surfaces and of seals for engine.py, and where their forces have kinks."""
+"""Numbers of contacts with surfaces and of seals for engine.py, and kinks of their forces."""
 
 from typing import Any
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import Akima1DInterpolator
 
 from . import engine as e
+from .grips import numbers_of
 from .scene import (
     FORCE,
     LENGTH,
@@ -29,7 +30,6 @@ from .scene import (
     Wall,
     plus,
 )
-from .grips import numbers_of
 
 RATE, ACCELERATION, TURNING = (0, 0, -1), (1, 0, -2), (0, 0, -2)
 ENERGY = (2, 1, -2)
@@ -245,7 +245,10 @@ class Builder:
         self.watch.append(([e.W_GAP, len(self.forces), 0, 0], [0.0, 0.0, 0.0, 0.0]))
         self.of_watch.append(name)
         self.force(name, kind, i, j, k, -1, par, len(self.watch) - 1)
-        if kind in (e.WALL, e.LIMIT):  # its kinks: where the damper is fully there, and where it pulls
+        if kind in (
+            e.WALL,
+            e.LIMIT,
+        ):  # its kinks: where the damper is fully there, and where it pulls
             for corner in (e.W_RAMP, e.W_PUSH):
                 self.watch.append(([corner, len(self.forces) - 1, 0, 0], [0.0] * 4))
                 self.of_watch.append(None)

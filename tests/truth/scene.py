@@ -605,9 +605,10 @@ class Writer:
                 d["preload"] = n(f.preload, *FORCE)
             return d
         if isinstance(f, Torsion):
-            d = {"type": "torsion_spring", "joint": f.joint, "stiffness": n(f.k, *MOMENT)}
-            d |= {"damping": n(f.c, 2, 1, -1), "preload": n(f.preload, *MOMENT)}
-            return d
+            m = 0 if self.s.of_joint(f.joint) == LENGTH else 2
+            d = {"type": "torsion_spring", "joint": f.joint, "stiffness": n(f.k, m, 1, -2)}
+            preload = n(f.preload, *(FORCE if m == 0 else MOMENT))
+            return d | {"damping": n(f.c, m, 1, -1), "preload": preload}
         if isinstance(f, Bushing):
             d = {"type": "bushing", "bodies": [f.i, f.j], "at": self.point(f.at)}
             d |= {"x_axis": self.vector(f.axes[0]), "y_axis": self.vector(f.axes[1])}

@@ -7,19 +7,15 @@ import numpy as np
 from .draw import (
     OWN_EVENTS,
     X,
-    Y,
     Z,
     about,
     any_inertia,
     bar_inertia,
     between,
-    chain,
-    consistent,
     decades,
     direction,
     dressed,
     given,
-    gravity,
     pick,
     rotation,
 )
@@ -64,10 +60,14 @@ def convex(rng: Any, size: float) -> list[tuple[float, float]]:
             return [(float(size * np.cos(a)), float(size * np.sin(a))) for a in turn]
 
 
-def on_a_surface(rng: Any, s: Scene, i: str, j: str, at: np.ndarray, ball: float, law: str) -> Touch:
+def on_a_surface(
+    rng: Any, s: Scene, i: str, j: str, at: np.ndarray, ball: float, law: str
+) -> Touch:
     """A contact whose surface is somewhere about `at`, without its ball; its place comes later."""
     Q = about(Z, between(rng, 0, 6.28)) if s.flat else rotation(rng)
-    shapes = ["plane", "cylinder", "polygon", "line", "ellipse"] + (["sphere"] * 2 if not s.flat else [])
+    shapes = ["plane", "cylinder", "polygon", "line", "ellipse"] + (
+        ["sphere"] * 2 if not s.flat else []
+    )
     f = Touch("touch", i, j, at, Q, at.copy(), ball, law, pick(rng, *shapes))
     f.hollow = bool(rng.random() < 0.4) and f.shape not in ("plane", "line")
     R = ball * between(rng, 2.5, 6) + 0.2
@@ -87,9 +87,9 @@ def on_a_surface(rng: Any, s: Scene, i: str, j: str, at: np.ndarray, ball: float
 
 def place_ball(rng: Any, f: Touch, flat: bool, gap: float) -> np.ndarray:
     """Where a ball is that is a gap away from the surface, and the way from the surface there."""
-    from .touches import distance
-    from .grips import SHAPES
     from . import touches as t
+    from .grips import SHAPES
+    from .touches import distance
 
     p = np.zeros((1, t.WIDTH))
     p[0, [t.SHAPE, t.RADIUS, t.FREE, t.BALLS]] = SHAPES[f.shape], f.radius, 1 - 2 * f.hollow, f.ball
@@ -126,7 +126,9 @@ def surface_contact(rng: Any) -> Drawn:
     i, base = "ground", None
     if kind in ("both", "carrier", "cam"):
         base = Body("base", decades(rng, 0.3, 5.0), np.eye(3), np.zeros(3))
-        base.inertia = base.mass * any_inertia(rng, 1.0, 0.6) if not flat else 0.2 * base.mass * np.eye(3)
+        base.inertia = (
+            base.mass * any_inertia(rng, 1.0, 0.6) if not flat else 0.2 * base.mass * np.eye(3)
+        )
         s.bodies.append(base)
         i = "base"
     I = any_inertia(rng, m, 2 * ball) if rng.random() < 0.3 else 0.4 * m * ball**2 * np.eye(3)
@@ -146,7 +148,9 @@ def surface_contact(rng: Any) -> Drawn:
     if rng.random() < 0.5:
         s.bodies.append(Body("ball", m, I, f.centre.copy()))
     else:  # its centre is not the body's
-        s.bodies.append(Body("ball", m, I, f.centre + 0.3 * max(f.ball, 0.1) * direction(rng) * level))
+        s.bodies.append(
+            Body("ball", m, I, f.centre + 0.3 * max(f.ball, 0.1) * direction(rng) * level)
+        )
     if flat and rng.random() < 0.2:
         f.axes = np.array([f.axes[0], f.axes[1], f.axes[2]])
     s.forces.append(f)
@@ -161,8 +165,16 @@ def surface_contact(rng: Any) -> Drawn:
         if flat:
             s.joints.append(Joint("hinge", "revolute", "ground", "ball", root, Z))
         else:
-            s.joints.append(Joint("hinge", pick(rng, "spherical", "revolute"), "ground", "ball", root,
-                                  direction(rng)))  # fmt: skip
+            s.joints.append(
+                Joint(
+                    "hinge",
+                    pick(rng, "spherical", "revolute"),
+                    "ground",
+                    "ball",
+                    root,
+                    direction(rng),
+                )
+            )
         if s.joints[-1].type == "spherical":
             s.joints[-1].axis = None
     if kind in ("carrier", "cam"):
@@ -175,20 +187,28 @@ def surface_contact(rng: Any) -> Drawn:
         else:
             s.forces.append(Torsion("spring", "pivot", decades(rng, 1, 20) * v * v, 0.05))
     if kind in ("arm", "cam", "carrier", "both") and rng.random() < 0.5:
-        p = f.centre + 1.0 * out * (1 if f.hollow else 1)
-        s.forces.append(Spring("string", "ground", "ball", p * level, f.centre, m * v * v * 4, 0.0,
-                               0.7))  # fmt: skip
+        p = f.centre + 1.0 * out
+        s.forces.append(
+            Spring("string", "ground", "ball", p * level, f.centre, m * v * v * 4, 0.0, 0.7)
+        )
     speeds = []
     for b in s.bodies:
         if b.name == "base":
-            speeds.append(np.r_[0.3 * v * rng.normal(size=3) * level, 0.5 * v * rng.normal(size=3) * spins])
+            speeds.append(
+                np.r_[0.3 * v * rng.normal(size=3) * level, 0.5 * v * rng.normal(size=3) * spins]
+            )
         else:
             u = -out * v * between(rng, 0.2, 1.0) + v * rng.normal(size=3) * 0.5 * level
             spin = v / max(f.ball, 0.1) * rng.normal(size=3) * spins * pick(rng, 0, 1)
             speeds.append(np.r_[u * level, spin])
     given(s, speeds)
     s.end = between(rng, 0.3, 2.0) / v
-    fast = np.sqrt(law.K * (1.5 if law.exponent > 1 else 1) * (0.01 * max(f.ball, 0.1)) ** (law.exponent - 1) / m)
+    fast = np.sqrt(
+        law.K
+        * (1.5 if law.exponent > 1 else 1)
+        * (0.01 * max(f.ball, 0.1)) ** (law.exponent - 1)
+        / m
+    )
     dressed(rng, s, 2 * fast, methods=(*OWN_EVENTS, "scipy:RK45"), tight=-9.0)
     if f.shape == "ellipse":
         s.tolerance = max(s.tolerance, 1e-4)
@@ -211,15 +231,25 @@ def seal(rng: Any) -> Drawn:
     height = decades(rng, 3e-3, 0.1) * l
     i = "ground"
     if kind == "door":
-        s.bodies.append(Body("base", decades(rng, 1, 5), bar_inertia(3.0, X, 0.3), 0.3 * n - 0.2 * x))
-        s.joints.append(Joint("pivot", "revolute", "ground", "base", np.zeros(3), Z if flat else direction(rng)))
+        s.bodies.append(
+            Body("base", decades(rng, 1, 5), bar_inertia(3.0, X, 0.3), 0.3 * n - 0.2 * x)
+        )
+        s.joints.append(
+            Joint("pivot", "revolute", "ground", "base", np.zeros(3), Z if flat else direction(rng))
+        )
         i = "base"
     least = max(-along @ n, 0.0)
     begin = n * (height * between(rng, 0.3, 1.3) + least) - 0.3 * l * x
     begin = begin + (0 if flat else 0.1 * Q[2])
     middle = begin + 0.5 * along + 0.1 * l * direction(rng) * level
-    s.bodies.append(Body("lid", m, bar_inertia(m, along, 0.2) if flat or rng.random() < 0.5
-                         else any_inertia(rng, m, l), middle))  # fmt: skip
+    s.bodies.append(
+        Body(
+            "lid",
+            m,
+            bar_inertia(m, along, 0.2) if flat or rng.random() < 0.5 else any_inertia(rng, m, l),
+            middle,
+        )
+    )
     deep = height * between(rng, 0.2, 1.0)
     e = pick(rng, 1.0, 1.2, 1.5, between(rng, 1.0, 3.0))
     load = m * v * v / l / (0.3 * height) * (e + 1) * decades(rng, 0.5, 5.0)
@@ -233,9 +263,16 @@ def seal(rng: Any) -> Drawn:
         f.springs = int(rng.integers(1, 9))
     s.forces.append(f)
     if kind == "lid":
-        s.joints.append(Joint("hinge", pick(rng, "revolute", "revolute", "spherical"), "ground", "lid",
-                              begin - 0.1 * l * x * pick(rng, 1, -12) + 0.1 * n,
-                              Z if flat else (Q[2] if rng.random() < 0.7 else direction(rng))))  # fmt: skip
+        s.joints.append(
+            Joint(
+                "hinge",
+                pick(rng, "revolute", "revolute", "spherical"),
+                "ground",
+                "lid",
+                begin - 0.1 * l * x * pick(rng, 1, -12) + 0.1 * n,
+                Z if flat else (Q[2] if rng.random() < 0.7 else direction(rng)),
+            )
+        )
         if s.joints[-1].type == "spherical":
             s.joints[-1].axis = None
         elif rng.random() < 0.6:
@@ -244,13 +281,24 @@ def seal(rng: Any) -> Drawn:
         a = n + 0.7 * direction(rng) * level
         s.joints.append(Joint("rail", "prismatic", "ground", "lid", middle, a / np.linalg.norm(a)))
     if rng.random() < 0.6:
-        s.forces.append(Spring("back", "ground", "lid", middle - 0.8 * n, middle, m * v * v / l**2 * 10,
-                               0.0, 0.5))  # fmt: skip
+        s.forces.append(
+            Spring(
+                "back", "ground", "lid", middle - 0.8 * n, middle, m * v * v / l**2 * 10, 0.0, 0.5
+            )
+        )
     g = v * v / (2 * height) * between(rng, 0.1, 1.0)
     if rng.random() < 0.7:
         s.gravity = -g * n if rng.random() < 0.5 else g * direction(rng) * level
-    given(s, [np.r_[(-n * v * between(rng, 0.2, 1) + 0.5 * v * rng.normal(size=3)) * level,
-                    v / l * rng.normal(size=3) * spins * pick(rng, 0.2, 1.0)] for _ in s.bodies])  # fmt: skip
+    given(
+        s,
+        [
+            np.r_[
+                (-n * v * between(rng, 0.2, 1) + 0.5 * v * rng.normal(size=3)) * level,
+                v / l * rng.normal(size=3) * spins * pick(rng, 0.2, 1.0),
+            ]
+            for _ in s.bodies
+        ],
+    )
     s.end = between(rng, 0.1, 0.7) * l / v
     fast = np.sqrt(load * l * e / deep * (height / deep) ** (e - 1) / m)
     dressed(rng, s, 3 * fast, methods=(*OWN_EVENTS, "scipy:RK45"), tight=-9.0)

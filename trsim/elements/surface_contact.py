@@ -72,7 +72,7 @@ from trsim.laws.friction import (
 )
 from trsim.laws.surfaces import PLANE, PROFILE, SPHERE, away, beside
 
-CORNERED = CODES["modified_coulomb"]
+CORNERED, STICKING = CODES["modified_coulomb"], CODES["sticking"]
 DEEP = 0.2  # of the radius of a ball: deeper than that it is no longer one that touches a surface
 
 
@@ -250,7 +250,7 @@ def part_of(own, F_n, speed):
 def friction_of(scene, e, F_n, n, v_t, speed):
     """Friction on body j, world axes, and the rates of both bristles."""
     own = Own(scene, e)
-    if own.state < 0:
+    if own.friction_law != STICKING:  # along a static path what sticks slides
         by = -part_of(own, F_n, speed) / speed if speed > 0.0 else 0.0
         return scaled(by, v_t), 0.0, 0.0
     f, z = own.friction, arm(scene.X, own.i, own.a_i)

@@ -41,6 +41,7 @@ SAME = 1e-13  # of the path: where a change is, and whether it has been reached
 FIRST = 1e-4  # of the time between rows: how far ahead the direction of the start is taken
 SURE = 100.0  # times what full sliding takes, or further
 MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
+FULL = 1.0 - 1e-6  # of the largest friction there can be: less is no full sliding
 SEEN = 0.01  # of the path: in that time what slides goes further than full sliding takes
 AGAIN = 50  # changes at one place: it is none
 BLOCK = 500  # rows
@@ -193,9 +194,17 @@ class Path:
         there = eq.place(t, *found)
         if there is None or self.looks.hidden(place, there):
             return None
-        if eq.turning and self.looks.all_slide(there):
-            return eq.along_itself(there, SEEN * self.end)
+        if eq.turning and self.looks.all_slide(there) and self.is_full(there):
+            for _ in range(2 if eq.surfaces else 1):
+                there = eq.along_itself(there, SEEN * self.end)
         return there
+
+    def is_full(self, place: Place) -> bool:
+        """Whether friction on all surfaces is that of full sliding."""
+        if not self.eq.surfaces:
+            return True
+        out = self.results.out(place, 0.0 * place.v)
+        return all(out[rub] >= FULL * mu * out[load] for mu, load, rub in self.eq.surfaces)
 
     def way(self, y: Array, y1: Array) -> float:
         """The furthest way of a body, rad or of the mechanism's size."""
