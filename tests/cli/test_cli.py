@@ -321,3 +321,30 @@ def test_check_lets_a_forced_step_pass(answer, scenario):
     forced = "method: rk4, step: 0.05 ms, force: true"
     scenario.write_text(small.SLIDER_CRANK.replace("method: dop853", forced))
     assert answer("check", scenario)[0] == 0
+
+
+DRIVEN = """
+bodies: {rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}}
+joints: {hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}}
+drives: {motor: {joint: hinge, velocity: 2 rad/s}}
+sensors: {angle: {joint: hinge}}
+solver: {end: 1}
+"""
+
+
+@pytest.mark.parametrize(
+    "more, driven",
+    [
+        ("", True),
+        ("phases: [{name: turn, for: 0.2 s}]", False),
+        ("events: {go: {when: t, value: 0.5, do: {release: [motor]}}}", False),
+        ("events: {seen: {when: t, value: 0.5, do: {record: true}}}", True),
+        ("forces: {end: {type: limit_stop, joint: hinge, upper: 1, stiffness: 1e4}}", False),
+    ],
+)
+def test_check_proposes_kinematic_analysis_where_it_is_taken(more, driven, scenario, answer, trsim):
+    scenario.write_text(DRIVEN + more)
+    [found] = answer("check", "crank.yaml")[1]["scenarios"]
+    assert found["kinematic"] is driven
+    _, said, _ = trsim("check", "crank.yaml")
+    assert ("`method: kinematic`" in said) is driven

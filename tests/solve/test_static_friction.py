@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ..runs import run
 from .test_static_path import TURNS, G, events, path, row
 
 SLIDE = """
@@ -125,3 +126,48 @@ def test_a_thread_that_locks_itself():
     assert np.tan(LEAD) < 0.15
     assert r.outcome.status == "limit" and "friction lock" in r.outcome.reason
     assert r.outcome.time < 1e-4
+
+
+TURNING = """
+planar: false
+bodies:
+  cam: {mass: 1 kg, inertia: [0.2, 0.2, 0.2], at: [0, 0, 0]}
+  arm: {mass: 0.5 kg, inertia: [0.02, 0.02, 0.02], at: [0.5, 0.3, 0.4]}
+joints:
+  pivot: {type: revolute, bodies: [ground, cam], at: [0.05, 0, 0], axis: [0.3, 1, 0.2]}
+  hinge: {type: revolute, bodies: [ground, arm], at: [0.8, 0.3, 0.3], axis: [0.2, 1, -0.3]}
+drives: {motor: {joint: pivot, position: "0.8*t"}}
+forces:
+  touch: {type: surface_contact, surface: {body: cam, shape: sphere, radius: 0.3},
+          ball: {body: arm, at: [0.1, 0.1, 0.38], radius: 0.1}, contact: rough}
+  back: {type: torsion_spring, joint: hinge, stiffness: 20, preload: -10}
+contact_laws:
+  rough: {normal: impact, stiffness: 1e4, exponent: 1, damping: 0, ramp: 1 mm,
+          friction: {law: LAW, coefficient: 0.3, v0: 0, v1: 1 mm/s}}
+solver: {method: static_path, end: 1}
+output: {every: 0.05, channels: ["*", "*.rotation"]}
+"""
+
+
+def test_friction_of_a_surface_is_against_the_travel_in_space():
+    """By the velocities of both bodies at the place of touch, whose direction turns."""
+    r = run(TURNING.replace("LAW", "modified_coulomb"))
+    turned = []
+    for k in range(1, len(r.t)):
+        at, R, v, w = (
+            {b: r[f"{b}.{word}"][k] for b in ("cam", "arm")}
+            for word in ("position", "rotation", "velocity", "angular_velocity")
+        )
+        ball = at["arm"] + R["arm"].reshape(3, 3) @ (np.array([0.1, 0.1, 0.38]) - [0.5, 0.3, 0.4])
+        n = (ball - at["cam"]) / np.linalg.norm(ball - at["cam"])
+        place = at["cam"] + 0.3 * n
+        slip = v["arm"] - v["cam"]
+        slip = slip + np.cross(w["arm"], place - at["arm"]) - np.cross(w["cam"], place - at["cam"])
+        slip -= (slip @ n) * n
+        force = r["touch.force"][k]
+        rub = force - (force @ n) * n
+        assert np.linalg.norm(rub) == pytest.approx(0.3 * (force @ n), rel=1e-9)
+        turned.append(slip / np.linalg.norm(slip))
+        across = np.cross(rub, slip) / np.linalg.norm(rub) / np.linalg.norm(slip)
+        assert rub @ slip < 0 and np.linalg.norm(across) < 1e-4
+    assert np.linalg.norm(turned[0] - turned[-1]) > 0.02

@@ -445,7 +445,11 @@ def test_redundant_hinges_share_alike():
 @pytest.mark.parametrize(
     "more, said",
     [
-        ("events: {e: {when: t, value: 0.1, do: {release: [motor]}}}", "events that record or end"),
+        (
+            "events: {e: {when: t, value: 0.1, do: {lock: [hinge]}}}",
+            "events that record, end a run",
+        ),
+        ("events: {e: {when: t, value: 0.1, do: {release: [hinge]}}}", "or let a drive go"),
         ("poincare: {p: {when: turn, plot: [turn, turn.rate]}}", "a section of a motion"),
     ],
 )
@@ -515,3 +519,35 @@ def test_accelerations_between_uneven_places():
               for t in (0.1, 0.2, 0.5)]  # fmt: skip
     assert slope(places[0], places[1], places[2], 1e-9) == pytest.approx(3 - 10 * 0.2)
     assert slope(None, places[1], places[2], 1e-9) == pytest.approx(3 - 5 * 0.7)
+
+
+PUSHED = """
+bodies:
+  cart: {mass: 1 kg, inertia: 0.01, at: [0, 0]}
+  block: {mass: 2 kg, inertia: 0.01, at: [0, 1]}
+joints:
+  rail: {type: prismatic, bodies: [ground, cart], at: [0, 0], axis: [1, 0]}
+  guide: {type: prismatic, bodies: [ground, block], at: [0, 1], axis: [0, 1]}
+drives: {motor: {joint: rail, position: "SIDE*t"}}
+sensors: {x: {joint: rail}, y: {joint: guide}}
+forces:
+  spring: {type: joint_spring, joint: guide, elastic: "100*stretch"}
+  push: {type: applied_load, body: block, direction: [0, 1, 0],
+         force: {table: TABLE, of: x, interpolation: linear}}
+"""
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("every", [0.05, 0.3])
+def test_points_of_a_bent_table_are_corners(side, every):
+    """Also where it begins on one: rates before and behind them are those of the lines there."""
+    x, F = np.array([0.0, 0.335, 0.617, 0.8]), np.array([0.0, 10.0, -5.0, -5.0])
+    order = slice(None, None, side)
+    table = [[side * float(a), float(b)] for a, b in zip(x[order], F[order], strict=True)]
+    r = path(PUSHED.replace("SIDE", str(side)).replace("TABLE", str(table)), every=every)
+    slope = np.append(np.diff(F) / np.diff(x), 0.0)
+    assert r["y"] == pytest.approx(np.interp(r.t, x, F) / 100 - 2 * G / 100, abs=1e-12)
+    there = slope[np.searchsorted(x, r.t, side="right") - 1] / 100
+    assert r["block.velocity"][:, 1] == pytest.approx(there, abs=1e-7)
+    assert np.abs(r["block.acceleration"]).max() < 1e-6
+    assert events(r, CORNER)[:, 0] == pytest.approx(x[1:], abs=1e-10)

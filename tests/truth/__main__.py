@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from . import ledger
-from .joints import FAMILIES
+from .static_paths import FAMILIES
 
 
 def show(family: str, seed: int) -> None:

@@ -16,8 +16,26 @@ again and again until its end is there.  Forces keep the side they are on within
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy.integrate._ivp import dop853_coefficients as tableau
+
+from .touches import BALLS as BALL_RADIUS
+from .touches import (
+    BRISTLES,
+    LAW,
+    meeting,
+    normal,
+    rolling,
+    rubbed,
+    seal_ends,
+    seal_gap,
+    sealed,
+    sliding,
+)
+from .touches import DAMPING as LOSS
+from .touches import RAMP as RAMP_OF
+from .touches import STATE as BRISTLE
+from .touches import K as STIFFNESS
+from .vectors import compiled, cross, dot, into, minus, out_of, plus, smooth, three, times
 
 A = np.ascontiguousarray(tableau.A[:12, :12])
 B = np.ascontiguousarray(tableau.B)
@@ -28,13 +46,29 @@ E5 = np.ascontiguousarray(tableau.E5[:12])
 # rows of constraints: two bodies, arms or directions in them, a component or a coordinate
 POINT, ACROSS, ALONG, DISTANCE, ANGLE = range(5)
 # forces
-FORCE, TORQUE, SPRING, TORSION, BUSHING, WALL, LIMIT, SOFT_DRIVE, SOFT_LINE, CLEARANCE = range(10)
+(
+    FORCE,
+    TORQUE,
+    SPRING,
+    TORSION,
+    BUSHING,
+    WALL,
+    LIMIT,
+    SOFT_DRIVE,
+    SOFT_LINE,
+    CLEARANCE,
+    TOUCH,
+    SEAL,
+) = range(12)
 # functions of time or of a coordinate
 CONSTANT, SINE, CUBIC, RAMP, BOX, TENT, BELL, TABLE, PULSES = range(9)
 # what is watched: the time, a coordinate, its rate, the gap of a force, a train of pulses
-W_TIME, W_PLACE, W_RATE, W_GAP, W_PULSE, W_RAMP, W_PUSH = range(7)
+# of a contact: its sliding, rolling and turning speed, where its damper is whole, where it would
+# pull; of a seal both ends
+(W_TIME, W_PLACE, W_RATE, W_GAP, W_PULSE, W_RAMP, W_PUSH, W_SLIP, W_ROLL, W_SPIN, W_WHOLE, W_PULL,
+ W_END) = range(13)  # fmt: skip
 TURN, SLIDE = range(2)  # kinds of coordinates
-LOADS, DRIVES, DAMPERS, IMPACTS, N_WORK = range(5)
+LOADS, DRIVES, DAMPERS, IMPACTS, FRICTION, N_WORK = range(6)
 DONE, STOPPED, STUCK, TOO_MANY, SINGULAR = range(5)
 NEAR = 1e-2  # turning points nearer to zero are told
 MOST = 10000  # steps
@@ -52,65 +86,12 @@ class Arrays(NamedTuple):
     coordinate: np.ndarray  # (c, 3) kind, i, j
     coordinate_par: np.ndarray  # (c, 10) arm in i, arm in j, axis in i, offset
     force: np.ndarray  # (f, 6) kind, i, j, coordinate, function or -1, what is watched or -1
-    force_par: np.ndarray  # (f, 36)
+    force_par: np.ndarray  # (f, 44)
     function: np.ndarray  # (g, 5) kind, coordinate or -1 for the time, first watched, table a..b
     function_par: np.ndarray  # (g, 6) its numbers, the time it begins
     table: np.ndarray  # (k, 5) start of an interval, four coefficients
     watch: np.ndarray  # (w, 4) kind, coordinate or force or -1, whether a crossing ends, sense
     watch_par: np.ndarray  # (w, 4) value, sense and origin of a sensor, rate of the pulses
-
-
-compiled = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)
-
-
-@compiled
-def cross(a, b):
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-@compiled
-def dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@compiled
-def plus(a, b):
-    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
-
-
-@compiled
-def minus(a, b):
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
-
-
-@compiled
-def times(f, a):
-    return (f * a[0], f * a[1], f * a[2])
-
-
-@compiled
-def three(A, i, k):
-    """Three numbers of row i of a table."""
-    return (A[i, k], A[i, k + 1], A[i, k + 2])
-
-
-@compiled
-def out_of(R, b, a):
-    """From the axes of body b."""
-    return (
-        R[b, 0, 0] * a[0] + R[b, 0, 1] * a[1] + R[b, 0, 2] * a[2],
-        R[b, 1, 0] * a[0] + R[b, 1, 1] * a[1] + R[b, 1, 2] * a[2],
-        R[b, 2, 0] * a[0] + R[b, 2, 1] * a[1] + R[b, 2, 2] * a[2],
-    )
-
-
-@compiled
-def into(R, b, a):
-    return (
-        R[b, 0, 0] * a[0] + R[b, 1, 0] * a[1] + R[b, 2, 0] * a[2],
-        R[b, 0, 1] * a[0] + R[b, 1, 1] * a[1] + R[b, 2, 1] * a[2],
-        R[b, 0, 2] * a[0] + R[b, 1, 2] * a[1] + R[b, 2, 2] * a[2],
-    )
 
 
 @compiled
@@ -149,15 +130,6 @@ def places(y, n):
         for c in range(3):
             r[b, c], v[b, c], w[b, c] = y[k + c], y[k + 7 + c], y[k + 10 + c]
     return r, v, w
-
-
-@compiled
-def smooth(s):
-    if s <= 0.0:
-        return 0.0, 0.0, 0.0
-    if s >= 1.0:
-        return 1.0, 0.0, 0.0
-    return s * s * (3 - 2 * s), 6 * s * (1 - s), 6 - 12 * s
 
 
 @compiled
@@ -261,6 +233,11 @@ def gap(m, f, r, v, w, R, q, qd):
     if m.force[f, 0] == LIMIT:
         k = m.force[f, 3]
         return par[f, 4] * (q[k] - par[f, 3]), par[f, 4] * qd[k], n
+    if m.force[f, 0] == TOUCH:
+        depth, rate, n, _ = meeting(par, f, i, j, r, v, w, R, m.table)
+        return depth, rate, n
+    if m.force[f, 0] == SEAL:
+        return seal_gap(par, f, i, j, r, v, w, R)
     _, _, d, dd = between(par, f, i, j, r, v, w, R)
     a = out_of(R, i, three(par, f, 6))
     ad = cross(three(w, i, 0), a)
@@ -401,7 +378,30 @@ def one_sided(m, f, side, mem, Q, r, v, w, R, q, qd, told):
 
 
 @compiled
-def forces(m, t, side, mem, r, v, w, R, q, qd, Q, told, power):
+def touched(m, f, side, mem, Q, r, v, w, R, z, zd, told, power):
+    """Of a contact with a surface."""
+    i, j, p = m.force[f, 1], m.force[f, 2], m.force_par
+    note(told, f, 0.0, (0.0, 0.0, 0.0))
+    if side[m.force[f, 5]] < 0:
+        return
+    d, rate, n, place = meeting(p, f, i, j, r, v, w, R, m.table)
+    elastic, F = normal(p, f, d, rate, mem[f])
+    T, M, lost, first, second = rubbed(p, f, i, j, F, n, place, r, v, w, R, z)
+    whole = plus(times(F, n), T)
+    push(Q, j, minus(place, three(r, j, 0)), whole)
+    push(Q, i, minus(place, three(r, i, 0)), times(-1.0, whole))
+    twist(Q, j, M)
+    twist(Q, i, times(-1.0, M))
+    power[IMPACTS] += (F - elastic) * rate
+    power[FRICTION] += lost
+    if p[f, LAW] == BRISTLES:
+        k = int(p[f, BRISTLE])
+        zd[k], zd[k + 1] = first, second
+    note(told, f, F, whole)
+
+
+@compiled
+def forces(m, t, side, mem, r, v, w, R, q, qd, z, zd, Q, told, power):
     """All applied forces into Q (n, 6); told (f, 4): a magnitude and a vector for each."""
     for c in range(N_WORK):
         power[c] = 0.0
@@ -455,6 +455,13 @@ def forces(m, t, side, mem, r, v, w, R, q, qd, Q, told, power):
             told[f, 0] = T
         elif kind == BUSHING:
             power[DAMPERS] += bushing(m, f, Q, r, v, w, R, told)
+        elif kind == TOUCH:
+            touched(m, f, side, mem, Q, r, v, w, R, z, zd, told, power)
+        elif kind == SEAL:
+            lost, rub, n = sealed(p, f, i, j, r, v, w, R, Q)
+            power[IMPACTS] += lost
+            power[FRICTION] += rub
+            note(told, f, dot(out_of(R, i, three(p, f, 6)), n), n)
         else:
             power[IMPACTS] += one_sided(m, f, side, mem, Q, r, v, w, R, q, qd, told)
 
@@ -632,7 +639,9 @@ def derivative(m, t, y, side, mem, yd, lam, told):
     r, v, w = places(y, n_b)
     q, qd = coordinates(m, y, r, v, w, R)
     Q, a, power = np.zeros((n_b, 6)), np.zeros((n_b, 6)), np.zeros(N_WORK)
-    forces(m, t, side, mem, r, v, w, R, q, qd, Q, told, power)
+    k = 13 * (n_b - 1) + n_c
+    z, zd = y[k : len(y) - N_WORK], np.zeros(len(y) - N_WORK - k)
+    forces(m, t, side, mem, r, v, w, R, q, qd, z, zd, Q, told, power)
     for b in range(1, n_b):
         light(m, R, b, Q, b, a)
     pivot = 1.0
@@ -662,8 +671,10 @@ def derivative(m, t, y, side, mem, yd, lam, told):
     k = 13 * (n_b - 1)
     for c in range(n_c):
         yd[k + c] = qd[c] if m.coordinate[c, 0] == TURN else 0.0
+    for c in range(len(zd)):
+        yd[k + n_c + c] = zd[c]
     for c in range(N_WORK):
-        yd[k + n_c + c] = power[c]
+        yd[len(y) - N_WORK + c] = power[c]
     return pivot
 
 
@@ -715,6 +726,27 @@ def projected(m, t, y, side):
 
 
 @compiled
+def of_contact(m, kind, f, value, r, v, w, R, par):
+    """What is watched of a contact with a surface, or of a seal."""
+    i, j = m.force[f, 1], m.force[f, 2]
+    if kind == W_END:
+        _, _, _, x0, x1 = seal_ends(par, f, i, j, r, R)
+        return x0 if value == 0.0 else x1
+    d, rate, n, place = meeting(par, f, i, j, r, v, w, R, m.table)
+    if kind == W_SLIP:
+        return sliding(n, i, j, r, v, w, place)[1] - value
+    if kind == W_WHOLE:
+        return d / par[f, RAMP_OF] - 1.0
+    if kind == W_PULL:
+        if d <= 0.0:
+            return 1.0
+        loss = par[f, LOSS] * smooth(d / par[f, RAMP_OF])[0] * rate
+        return 1.0 + loss / (par[f, STIFFNESS] * d ** par[f, STIFFNESS + 1])
+    _, size, along = rolling(n, i, j, w)
+    return par[f, BALL_RADIUS] * (size if kind == W_ROLL else abs(along)) - value
+
+
+@compiled
 def watched(m, t, y, out):
     """How far everything watched is above its value."""
     n_b = len(m.mass)
@@ -734,6 +766,8 @@ def watched(m, t, y, out):
             out[k] = p[k, 1] * qd[of] - p[k, 0]
         elif kind == W_GAP:
             out[k] = gap(m, of, r, v, w, R, q, qd)[0]
+        elif kind >= W_SLIP:
+            out[k] = of_contact(m, kind, of, p[k, 0], r, v, w, R, m.force_par)
         elif kind in (W_RAMP, W_PUSH):
             d, dd, _ = gap(m, of, r, v, w, R, q, qd)
             first = 0 if m.force[of, 0] == LIMIT else 9
@@ -754,7 +788,8 @@ def watched(m, t, y, out):
 def remembers(m, k):
     """Whether what is watched is a contact whose force depends on how it began."""
     of = m.watch[k, 1]
-    return m.watch[k, 0] == W_GAP and m.force[of, 0] == CLEARANCE and m.force_par[of, 12] < 1.0
+    kind = m.force[of, 0]
+    return m.watch[k, 0] == W_GAP and kind in (CLEARANCE, TOUCH) and m.force_par[of, 12] < 1.0
 
 
 @compiled
@@ -1007,6 +1042,10 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singu
             deep[which] = 0.0
             if m.watch[which, 0] == W_GAP and side[which] > 0:
                 mem[m.watch[which, 1]] = max(s1[which], mem[m.watch[which, 1]])
+                of = m.watch[which, 1]
+                if m.force[of, 0] == TOUCH and m.force_par[of, LAW] == BRISTLES:
+                    first = 13 * (n_b - 1) + n_c + int(m.force_par[of, BRISTLE])
+                    y[first], y[first + 1] = 0.0, 0.0
             if m.watch[which, 0] == W_GAP and side[which] < 0:
                 mem[m.watch[which, 1]] = m.force_par[m.watch[which, 1], 13]
             h = min(h, 1e-2 * h + 1e-6)

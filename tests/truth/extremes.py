@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .reference import APART, Smooth, Truth
-from .scene import Scene
+from .scene import Scene, Seal, Touch
 
 FEWEST = 5  # ends of steps in a stretch whose polynomials say anything
 AROUND, APART_BY = 20, 0.3  # ends; of their mean distance: nearer ones say nothing more
@@ -34,8 +34,17 @@ def beyond(
         return
     loose = any(CHANCE in text for text in r.warnings)
     beside: list[Smooth] | None = None
+    # distances have corners where another place of a surface is the nearest one
+    cornered = {
+        f"{f.name}.{word}"
+        for f in scene.forces
+        if isinstance(f, Touch) and f.shape in ("polygon", "line", "ellipse")
+        for word in ("penetration", "penetration_rate")
+    } | {f"{f.name}.compression" for f in scene.forces if isinstance(f, Seal)}
     for name, c in t.channels.items():
         if name not in r.extremes or (loose and c.kind in ("force", "moment")):
+            continue
+        if name in cornered:
             continue
         unit = scene.unit(c.dims)  # type: ignore[arg-type]
         soft = max((np.nanmax(np.abs(a[name].values - c.values)) for a in t.about), default=0.0)

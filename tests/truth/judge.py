@@ -33,7 +33,7 @@ from trsim.solve.simulate import simulate
 
 from .extremes import beyond
 from .reference import Channel, Crossing, Truth, size
-from .scene import Event, Limit, Scene, Section, Wall
+from .scene import Event, Limit, Scene, Seal, Section, Touch, Wall
 
 EASY, WHOLE = 20.0, 1.0
 TIMES, STATED, DEPTH = 100.0, 10.0, 10.0
@@ -41,6 +41,8 @@ SURE = 3.0  # times how far the reference is sure, beside its bound
 RIGHT, WRONG, REFUSED, TOLD = "right", "WRONG", "refused", "told"
 UNJUDGED, CRASH = "unjudged", "CRASH"
 BROKEN = "BROKEN"  # the generator itself
+# of a contact that is pressed too deep, of a seal
+MEANS_NOTHING = re.compile("for its law to mean anything|its line went through the plane")
 LEAST = 1e-9  # bound of what is closed to rounding
 
 
@@ -199,7 +201,9 @@ def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
         worst += beyond(scene, t, r, float(bound.max()), top, share)
     v.ratio, v.what = max(worst, key=lambda x: x[0] if x[0] == x[0] else np.inf)
     v.grazing = len(t.grazing) + int(t.until < np.inf)
-    if not v.ratio <= 1.0:
+    if not v.ratio <= 1.0 and any(MEANS_NOTHING.search(text) for text in r.warnings):
+        v.verdict, v.why = TOLD, MEANS_NOTHING.pattern
+    elif not v.ratio <= 1.0:
         v.verdict = WRONG
     elif v.reach < 0.1:
         v.verdict = UNJUDGED
@@ -292,7 +296,7 @@ def parted(scene: Scene, t: Truth, r: Ran, tolerance: float) -> float:
 
 def touching(scene: Scene) -> set[str]:
     """The names of what is touched."""
-    names = {f.name for f in scene.forces if isinstance(f, (Wall, Limit))}
+    names = {f.name for f in scene.forces if isinstance(f, (Wall, Limit, Touch, Seal))}
     return names | {j.name for j in scene.joints if j.clearance is not None}
 
 

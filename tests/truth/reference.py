@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import Akima1DInterpolator
 
 from . import engine as e
+from .grips import numbers_of
 from .scene import (
     FORCE,
     LENGTH,
@@ -22,8 +23,10 @@ from .scene import (
     Limit,
     Load,
     Scene,
+    Seal,
     Spring,
     Torsion,
+    Touch,
     Wall,
     plus,
 )
@@ -81,6 +84,7 @@ class Builder:
         self.of_watch: list[Any] = []
         self.coordinates: list[tuple[list[int], list[float]]] = []
         self.coordinate: dict[str, int] = {}
+        self.bristles: list[float] = []  # how far each bends at most
         for joint in scene.joints:
             self.add_coordinate(joint)
         for joint in scene.joints:
@@ -234,14 +238,17 @@ class Builder:
     def force(
         self, name: str, kind: int, i: int, j: int, k: int, g: int, par: Any, w: int = -1
     ) -> None:
-        self.forces.append(([kind, i, j, k, g, w], [*par, *[0.0] * (36 - len(par))]))
+        self.forces.append(([kind, i, j, k, g, w], [*par, *[0.0] * (44 - len(par))]))
         self.of_force.append(name)
 
     def one_sided(self, name: str, kind: int, i: int, j: int, k: int, par: Any) -> None:
         self.watch.append(([e.W_GAP, len(self.forces), 0, 0], [0.0, 0.0, 0.0, 0.0]))
         self.of_watch.append(name)
         self.force(name, kind, i, j, k, -1, par, len(self.watch) - 1)
-        if kind != e.CLEARANCE:  # its kinks: where the damper is fully there, and where it pulls
+        if kind in (
+            e.WALL,
+            e.LIMIT,
+        ):  # its kinks: where the damper is fully there, and where it pulls
             for corner in (e.W_RAMP, e.W_PUSH):
                 self.watch.append(([corner, len(self.forces) - 1, 0, 0], [0.0] * 4))
                 self.of_watch.append(None)
@@ -269,6 +276,8 @@ class Builder:
             arms = (*self.local(f.i, f.at), *self.local(f.j, f.at))
             par = (*arms, *np.asarray(f.axes).ravel(), *f.k, *f.c, *f.kr, *f.cr)
             self.force(f.name, e.BUSHING, n[f.i], n[f.j], -1, -1, par)
+        elif isinstance(f, (Touch, Seal)):
+            self.add_contact(f)
         elif isinstance(f, Wall):
             arms = (*self.local(f.i, f.wall), *self.local(f.j, f.point))
             par = (*arms, *basis(f.normal)[0], f.k, f.c, f.ramp)
@@ -278,6 +287,19 @@ class Builder:
             for value, sign in ((f.lower, -1.0), (f.upper, 1.0)):
                 if value is not None:
                     self.one_sided(f.name, e.LIMIT, 0, 0, k, (f.k, f.c, f.ramp, value, sign))
+
+    def add_contact(self, f: Any) -> None:
+        """Of a ball with a surface, or of a seal with a plane; and its kinks."""
+        i, j = self.number[f.i], self.number[f.j]
+        par, kinks, bent = numbers_of(self.s, f, len(self.tables), len(self.bristles))
+        self.tables += [[*point, 0.0, 0.0, 0.0] for point in f.core()]
+        self.bristles += [bent] * 2 if bent else []
+        arms = (*self.local(f.i, f.at), *self.local(f.j, f.centre))
+        kind = e.SEAL if isinstance(f, Seal) else e.TOUCH
+        self.one_sided(f.name, kind, i, j, -1, (*arms, *par))
+        for kink, value in kinks:
+            self.watch.append(([kink, len(self.forces) - 1, 0, 0], [value, 0.0, 0.0, 0.0]))
+            self.of_watch.append(None)
 
     def add_clearance(self, joint: Any) -> None:
         law = next(x for x in self.s.laws if x.name == joint.law)
@@ -317,7 +339,7 @@ class Builder:
             table([a for a, _ in self.coordinates], 3, np.int64),
             table([b for _, b in self.coordinates], 10, float),
             table([a for a, _ in self.forces], 6, np.int64),
-            table([b for _, b in self.forces], 36, float),
+            table([b for _, b in self.forces], 44, float),
             table([a for a, _ in self.functions], 5, np.int64),
             table([b for _, b in self.functions], 6, float),
             table(self.tables, 5, float),
@@ -329,7 +351,7 @@ class Builder:
 def start_state(b: Builder) -> np.ndarray:
     """As drawn, with the velocities that are given; joints at their initial values."""
     s, m = b.s, b.arrays
-    y = np.zeros(13 * len(s.bodies) + len(b.coordinates) + e.N_WORK)
+    y = np.zeros(13 * len(s.bodies) + len(b.coordinates) + len(b.bristles) + e.N_WORK)
     for k, body in enumerate(s.bodies):
         c = 13 * k
         y[c : c + 3], y[c + 3] = body.at, 1.0
@@ -516,6 +538,7 @@ class Course:
         floor = 1e-2 * pivot if redundant else LEAST_PIVOT
         size = np.full(len(y), 0.1)
         size[13 * len(self.s.bodies) :] = 1.0
+        size[len(y) - e.N_WORK - len(b.bristles) : len(y) - e.N_WORK] = b.bristles
         while True:
             found = e.march(
                 m, t, y, side, mem, deep, self.times[at : stops[0]], h_max, turn, rtol, size, 20000,
@@ -703,6 +726,9 @@ def told(
             unit, kind = (MOMENT, "moment") if turns else (FORCE, "force")
             value = F[:, which, 0].sum(axis=1)[:, None]
             yield f"{f.name}.normal_force", value, unit, False, kind
+    for f in s.forces:
+        if isinstance(f, (Touch, Seal)):
+            yield from of_contact(b, b.of_force.index(f.name), f, Y, F, R)
     for joint in s.joints:
         if joint.clearance is not None:
             value = F[:, b.of_force.index(joint.name), :1]
@@ -712,6 +738,7 @@ def told(
     yield "energy.work.drives", work[:, [e.DRIVES]], ENERGY, False, "energy"
     yield "energy.work.dampers", -work[:, [e.DAMPERS]], ENERGY, False, "energy"
     yield "energy.work.impacts", -work[:, [e.IMPACTS]], ENERGY, False, "energy"
+    yield "energy.work.friction", -work[:, [e.FRICTION]], ENERGY, False, "energy"
     kinetic = np.zeros((n, 1))
     for k, body in enumerate(s.bodies):
         v, w = Y[:, 13 * k + 7 : 13 * k + 10], Y[:, 13 * k + 10 : 13 * k + 13]
@@ -719,6 +746,27 @@ def told(
         kinetic[:, 0] += 0.5 * body.mass * np.sum(v * v, axis=1)
         kinetic[:, 0] += 0.5 * np.einsum("ni,ij,nj->n", local, body.inertia, local)
     yield "energy.kinetic", kinetic, ENERGY, False, "energy"
+
+
+def of_contact(b: Builder, k: int, f: Any, Y: Any, F: Any, R: Any) -> Iterator[Any]:
+    """Channels of a contact with a surface, or of a seal."""
+    m, name = b.arrays, f.name
+    yield f"{name}.normal_force", F[:, k, :1], FORCE, False, "force"
+    yield f"{name}.force", F[:, k, 1:], FORCE, True, "force"
+    none = np.zeros(0)
+    depth, n = np.empty((len(Y), 2)), np.empty((len(Y), 3))
+    for row, y in enumerate(Y):
+        r, v, w = e.places(y, len(m.mass))
+        *depth[row], n[row] = e.gap(m, k, r, v, w, R[row], none, none)
+    if isinstance(f, Seal):
+        yield f"{name}.compression", depth[:, :1], LENGTH, False, "place"
+    else:
+        yield f"{name}.penetration", depth[:, :1], LENGTH, False, "place"
+        yield f"{name}.penetration_rate", depth[:, 1:], SPEED, False, "speed"
+    across = F[:, k, 1:] - np.sum(F[:, k, 1:] * n, axis=1)[:, None] * n
+    rub = np.linalg.norm(across, axis=1)[:, None]
+    rub[rub < 1e-13 * F[:, k, :1]] = 0.0
+    yield f"{name}.friction_force", rub, FORCE, False, "force"
 
 
 def reaction(m: e.Arrays, a: int, R: Any, lam: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+MANY = 240  # places of an ellipse that is written as a spline
 FORCE, MOMENT = (1, 1, -2), (2, 1, -2)
 NONE, LENGTH, SPEED = (0, 0, 0), (1, 0, 0), (1, 0, -1)
 PLANE = np.diag([1.0, 1.0, 1.0])
@@ -243,6 +244,86 @@ class Limit:
 
 
 @dataclass
+class Touch:
+    """A ball of body j that meets a surface of body i."""
+
+    name: str
+    i: str
+    j: str
+    at: np.ndarray  # origin of the surface
+    axes: np.ndarray  # (3, 3) rows x, y, z of the surface
+    centre: np.ndarray
+    ball: float
+    law: str
+    shape: str = "plane"  # sphere, cylinder, polygon, line, ellipse
+    radius: float = 0.0  # of a sphere or a cylinder, of the corners of a polygon
+    other: tuple[float, float] = (0.0, 0.0)  # half axes of an ellipse
+    points: list[tuple[float, float]] = field(default_factory=list)  # corners
+    hollow: bool = False
+    rolling: float = 0.0
+    spinning: float = 0.0
+
+    def core(self) -> list[tuple[float, float]]:
+        """Corners of a polygon whose sides are moved inwards by the radius; places of a line."""
+        if self.shape != "polygon":
+            return self.points
+        p = np.array(self.points)
+        ahead = np.roll(p, -1, axis=0) - p
+        ahead /= np.linalg.norm(ahead, axis=1)[:, None]
+        behind = np.roll(ahead, 1, axis=0)
+        sine = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+        # anticlockwise: inwards is to the left of each side
+        inner = p + (self.radius / sine)[:, None] * (ahead - behind)
+        return [(float(x), float(y)) for x, y in inner]
+
+
+@dataclass
+class Seal:
+    """A strip of body j along a line, pressed against a plane of body i."""
+
+    name: str
+    i: str
+    j: str
+    at: np.ndarray  # a place of the plane
+    normal: np.ndarray
+    centre: np.ndarray  # where the line begins
+    last: np.ndarray  # and where it ends
+    height: float
+    load: float
+    depth: float
+    exponent: float
+    damping: float = 0.0
+    friction: float = 0.0
+    full: float = 1e-3
+    springs: int | None = None
+
+    def core(self) -> list[tuple[float, float]]:
+        return []
+
+
+@dataclass
+class Grip:
+    """Of the law of a contact with a surface: what is lost and what rubs."""
+
+    name: str
+    K: float
+    exponent: float
+    normal: str = "impact"
+    restitution: float = 1.0
+    damping: float = 0.0
+    ramp: float = 0.0
+    slowest: float = 1e-6
+    friction: str = "none"  # modified_coulomb, sticking
+    mu: float = 0.0
+    v0: float = 0.0
+    v1: float = 1.0
+    mu_s: float = 0.0
+    v_s: float = 1.0
+    sigma0: float = 0.0
+    sigma1: float = 0.0
+
+
+@dataclass
 class Law:
     name: str
     K: float
@@ -294,7 +375,7 @@ class Scene:
     drives: list[Drive] = field(default_factory=list)
     sensors: list[Sensor] = field(default_factory=list)
     forces: list[Any] = field(default_factory=list)
-    laws: list[Law] = field(default_factory=list)
+    laws: list[Any] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
     sections: list[Section] = field(default_factory=list)
     gravity: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -524,9 +605,10 @@ class Writer:
                 d["preload"] = n(f.preload, *FORCE)
             return d
         if isinstance(f, Torsion):
-            d = {"type": "torsion_spring", "joint": f.joint, "stiffness": n(f.k, *MOMENT)}
-            d |= {"damping": n(f.c, 2, 1, -1), "preload": n(f.preload, *MOMENT)}
-            return d
+            m = 0 if self.s.of_joint(f.joint) == LENGTH else 2
+            d = {"type": "torsion_spring", "joint": f.joint, "stiffness": n(f.k, m, 1, -2)}
+            preload = n(f.preload, *(FORCE if m == 0 else MOMENT))
+            return d | {"damping": n(f.c, m, 1, -1), "preload": preload}
         if isinstance(f, Bushing):
             d = {"type": "bushing", "bodies": [f.i, f.j], "at": self.point(f.at)}
             d |= {"x_axis": self.vector(f.axes[0]), "y_axis": self.vector(f.axes[1])}
@@ -538,6 +620,10 @@ class Writer:
             ):
                 d[key] = [n(c, *dims) for c in v]
             return d
+        if isinstance(f, Touch):
+            return self.touch(f)
+        if isinstance(f, Seal):
+            return self.seal(f)
         d = {"type": "limit_stop"}
         if isinstance(f, Wall):
             d["point"] = {"body": f.j, "at": self.point(f.point)}
@@ -553,7 +639,68 @@ class Writer:
         d |= {"stiffness": n(f.k, m, 1, -2), "damping": n(f.c, m, 1, -1), "ramp": n(f.ramp, *dims)}
         return d
 
-    def law(self, law: Law) -> dict[str, Any]:
+    def touch(self, f: Touch) -> dict[str, Any]:
+        """A contact with a surface; an ellipse is written as a spline through many places."""
+        n = self.n
+        d: dict[str, Any] = {"body": f.i, "at": self.point(f.at)}
+        d |= {"x_axis": self.vector(f.axes[0]), "y_axis": self.vector(f.axes[1])}
+        points = f.points
+        if f.shape == "ellipse":
+            turn = np.arange(MANY) * 2 * np.pi / MANY
+            points = [(f.other[0] * np.cos(u), f.other[1] * np.sin(u)) for u in turn]
+        d["shape"] = "profile" if points else f.shape
+        if points:
+            d["points"] = [[n(c, *LENGTH) for c in p] for p in points]
+            d["closed"] = f.shape != "line"
+            if f.shape == "ellipse":
+                d["smooth"] = True
+            elif f.radius:
+                d["corner_radius"] = n(f.radius, *LENGTH)
+        elif f.radius:
+            d["radius"] = n(f.radius, *LENGTH)
+        if f.hollow:
+            d["hollow"] = True
+        ball = {"body": f.j, "at": self.point(f.centre), "radius": n(f.ball, *LENGTH)}
+        whole = {"type": "surface_contact", "surface": d, "ball": ball, "contact": f.law}
+        for key, lever in (("rolling_resistance", f.rolling), ("spinning_friction", f.spinning)):
+            if lever:
+                whole[key] = n(lever, *LENGTH)
+        return whole
+
+    def seal(self, f: Seal) -> dict[str, Any]:
+        n = self.n
+        d: dict[str, Any] = {
+            "type": "seal",
+            "line": {"body": f.j, "start": self.point(f.centre), "end": self.point(f.last)},
+            "against": {"body": f.i, "at": self.point(f.at), "normal": self.vector(f.normal)},
+            "height": n(f.height, *LENGTH), "load": n(f.load, 0, 1, -2), "at": n(f.depth, *LENGTH),
+            "exponent": f.exponent, "damping": n(f.damping, -1, 0, 1), "friction": f.friction,
+            "full_from": n(f.full, *SPEED),
+        }  # fmt: skip
+        return d | ({"springs": f.springs} if f.springs else {})
+
+    def grip(self, law: Grip) -> dict[str, Any]:
+        L, M, T = self.s.scale
+        K = law.K * M * L / T**2 / L**law.exponent
+        d: dict[str, Any] = {"normal": law.normal, "stiffness": K, "exponent": law.exponent}
+        if law.normal == "impact":
+            d |= {"damping": self.n(law.damping, 0, 1, -1), "ramp": self.n(law.ramp, *LENGTH)}
+        else:
+            d |= {"restitution": law.restitution, "slowest_impact": self.n(law.slowest, *SPEED)}
+        rub: dict[str, Any] = {"law": law.friction}
+        if law.friction != "none":
+            rub["coefficient"] = law.mu
+        if law.friction == "modified_coulomb":
+            rub |= {"v0": self.n(law.v0, *SPEED), "v1": self.n(law.v1, *SPEED)}
+        if law.friction == "sticking":
+            rub |= {"static_coefficient": law.mu_s, "stribeck_speed": self.n(law.v_s, *SPEED)}
+            rub["bristle_stiffness"] = self.n(law.sigma0, -1, 0, 0)
+            rub["bristle_damping"] = self.n(law.sigma1, -1, 0, 1)
+        return d | {"friction": rub}
+
+    def law(self, law: Any) -> dict[str, Any]:
+        if isinstance(law, Grip):
+            return self.grip(law)
         # K in N/m^exponent
         L, M, T = self.s.scale
         return {

@@ -21,7 +21,10 @@ steps of at most a fiftieth of a turn, every crossing located by making the step
 angle where that is singular. The families `joints`, `joint_loops`, `geared` and `flat_joints` (all
 kinds of joints in chains and loops, links, gears, racks, worms and couplers on carriers that move)
 are judged in the coordinates of their joints, which take no constraint rows (tests/truth/screws.py:
-products of exponentials of screws). Flexible bars are judged by a tight run of another method. The
+products of exponentials of screws). The families
+`surface_contact` and `seal` have their own distances and forces (tests/truth/touches.py);
+`static_path` and `static_cam` are judged by places at which no joint begins to move
+(tests/truth/statics.py). Flexible bars are judged by a tight run of another method. The
 truth is found in units near one and in the axes of the drawing; what trsim reads has lengths,
 masses and times scaled by 1e-3 to 1e3 and is turned to any direction. Methods, tolerances (1e-2 to
 1e-10), numbers of rows and speeds are drawn too.

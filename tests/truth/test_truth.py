@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import yaml
 
-from .joints import FAMILIES
 from .judge import RIGHT, TIMES, TOLD, UNJUDGED, WRONG, Verdict, judged, ran
+from .static_paths import FAMILIES
 from .trial import cautious, made, true
 
 SEEDS = range(5)

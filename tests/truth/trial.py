@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from . import statics
 from .families import ENGINE, INVALID, ONE, RIGID, TIGHT_RUN, Drawn
-from .joints import FAMILIES
 from .judge import (
     BROKEN,
     CRASH,
@@ -28,6 +28,7 @@ from .judge import (
 )
 from .reference import Truth, Unfit, growth_of_later, truth
 from .scene import Scene
+from .static_paths import FAMILIES, STATIC
 
 
 def made(family: str, seed: int) -> Drawn:
@@ -84,6 +85,10 @@ def verdict(family: str, seed: int) -> Verdict:
         tight = ran(tighter(s).text()) if r.exit == 0 else r
         v.cpu = (time.process_time() - middle, middle - begun)
         return against(s, r, tight, v)
+    if drawn.by == STATIC:
+        v = statics.judged(s, r, v)
+        v.cpu = (time.process_time() - middle, middle - begun)
+        return v
     if drawn.by == RIGID:
         return rigid(s, r, v)
     if t is None:

@@ -107,9 +107,21 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "unknowns": int(model.n_v),
         "constraints": int(model.m),
         **{name: getattr(mechanism, name) for name in FACTS},
+        "kinematic": is_driven(scenario, mechanism),
         "release": released(scenario, mechanism),
         "notes": [*mechanism.notes, *lint(scenario), *scenario.bare],
     }
+
+
+def is_driven(scenario: Any, mechanism: Any) -> bool:
+    """Whether kinematic analysis takes the scenario."""
+    from trsim.solve.start.driven import check_driven
+
+    try:
+        check_driven(scenario, mechanism)
+    except TrsimError:
+        return False
+    return True
 
 
 def of_table(spec: Any) -> str:
@@ -272,7 +284,7 @@ def mobility_lines(found: dict[str, Any]) -> list[str]:
             f"              they differ because {len(redundant)} rows repeat what others say: "
             "counting takes every row for a freedom"
         )
-    if rank == 0 and found["drives"]:
+    if found["drives"] and found["kinematic"]:
         told.append(
             "              driven in all freedoms: `method: kinematic` finds places, forces and "
             "torques row by row, without integrating"

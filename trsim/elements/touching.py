@@ -26,7 +26,7 @@ from trsim.laws.friction import CODES, N_PARAMETERS, friction_force, on_branch, 
 from trsim.laws.outlines import beside_side
 from trsim.laws.surfaces import PLANE, PROFILE, away, beside
 
-CORNERED = CODES["modified_coulomb"]
+CORNERED, STICKING = CODES["modified_coulomb"], CODES["sticking"]
 APART = 1e-5  # of how far the centre is away: places between which a normal is seen to turn
 ON_SEAM = 1e-9  # of the radius of a ball
 
@@ -164,7 +164,7 @@ def part_of(own, F_n, speed):
 def friction_of(scene, e, F_n, n, v_t, speed):
     """Friction on body j, world axes, and the rates of both bristles."""
     own = Own(scene, e)
-    if own.state < 0:
+    if own.friction_law != STICKING:  # along a static path what sticks slides
         by = -part_of(own, F_n, speed) / speed if speed > 0.0 else 0.0
         return scaled(by, v_t), 0.0, 0.0
     f, z = own.friction, arm(scene.X, own.i, own.a_i)

@@ -85,6 +85,7 @@ class Checked(Subject):
     unknowns           velocities
     constraints        rows kept, drives included
     mobility_by_count  unknowns less all rows
+    kinematic          whether `method: kinematic` takes it: all is driven, and nothing lets go
     redundant          rows dropped
     singular           rows that depend on others only as drawn
     unique             reactions that the motion determines
@@ -117,6 +118,7 @@ class Checked(Subject):
     unknowns: int
     constraints: int
     mobility_by_count: int
+    kinematic: bool
     singular: list[str]
     unique: list[str]
     release: Release | None

@@ -9,6 +9,7 @@ from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
 from trsim.kernels.packed import f8, i8
 from trsim.kernels.vectors import clear_table, copy_to
+from trsim.solve.march.accelerations import RUN, untouched
 from trsim.solve.march.calls import DENSE_AT, LAST_AT, call_dense, call_interpolate
 from trsim.solve.march.earlier import either_step
 from trsim.solve.march.land import evaluate_inside
@@ -19,6 +20,8 @@ from trsim.solve.march.settle import answered, at_rest
 # rows are closed to rounding, which is felt 1 / pivot^1.5 times in what they share
 NOISE, PLAIN = 1e-12, 1e-2  # 100 times that; a pivot that always serves
 NEAREST, FURTHEST = 1e-3, 0.1  # of a step
+ASIDE = 1e-4  # of a step: between what rates are taken
+ASTRAY = 0.01  # of the largest acceleration so far: what is off by more says nothing of it
 # weights of values at 1, 2 and 3 times a distance to either side
 OF_FOUR, OF_SIX = (0.0, 2.0 / 3.0, -1.0 / 6.0, 0.0), (0.0, 0.75, -0.3, 0.05)
 
@@ -68,6 +71,29 @@ def move_end(b, last, late):
 def measure_inside(s, r, b, at, theta):
     """`measure_in` of the step at hand."""
     call_measure_in(b.measure_in, s, r, b, 0, at, theta)
+
+
+@internal
+def astray(s, r, b, setting, earlier, theta):
+    """Whether the forces measured last, at theta of a step in touch, are none of the motion: its
+    accelerations there are not the rates of what is interpolated.
+
+    What dies out faster than a step, as sliding does in the ramp of friction, is right at its end
+    long before it is right inside.
+    """
+    if untouched(s, r):
+        return False
+    y, P, _, _, _ = either_step(r, b, earlier)
+    h = r.earlier_h if earlier else b.h
+    low, high = max(theta - ASIDE, 0.0), min(theta + ASIDE, 1.0)
+    call_interpolate(b.interpolate, P, y, low, b.rough[1])
+    call_interpolate(b.interpolate, P, y, high, b.rough[2])
+    allowed = max(ASTRAY, RUN * setting.tolerance) * r.top_acceleration
+    for c in range(s.n_q, s.n_q + s.v_node):
+        rate = (b.rough[2, c] - b.rough[1, c]) / ((high - low) * h)
+        if s.scale[c] * abs(rate - b.rough[0, c]) > allowed:
+            return True
+    return False
 
 
 @compiled(MEASURE_IN)

@@ -155,6 +155,7 @@ def fall(s, r, b, way, start, end):
     (c, sign, beyond, depth), (low, f0, r0) = way, start
     at_low, f_at_low = low, f0  # the last place where it was seen to be positive
     high = end
+    over, g_over = NONE, 0.0  # the first place where it was seen to be over
     for _ in range(LOOKS):
         g1, rate = inside(s, r, b, c, high)
         if high == 1.0:
@@ -166,6 +167,7 @@ def fall(s, r, b, way, start, end):
         )
         least = 0.0 if high >= end else beyond  # at an end what comes after is not known
         if f1 < -least or (f1 == 0.0 and least == 0.0 and r1 < 0.0):
+            over, g_over = high, g1
             if short or falls(r0, r1, M, length) or (M < 0.0 and high - low <= PART):
                 return bracketed_root(s, r, b, c, (at_low, sign * f_at_low), (high, g1))
         elif short or (
@@ -182,6 +184,8 @@ def fall(s, r, b, way, start, end):
             continue
         high = 0.5 * (low + high)
     r.unproved += 1
+    if over < NONE and f_at_low > 0.0:  # not proved to be the first one, but one there is
+        return bracketed_root(s, r, b, c, (at_low, sign * f_at_low), (over, g_over))
     return NONE
 
 

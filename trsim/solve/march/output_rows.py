@@ -3,8 +3,8 @@
 from trsim.elements.scene import PROJECTION
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import all_finite, copy_to
-from trsim.solve.march.calls import LOOK_AT, STEP_AT, call_look
-from trsim.solve.march.dense_output import measure_inside
+from trsim.solve.march.calls import INSIDE_AT, LOOK_AT, STEP_AT, call_look
+from trsim.solve.march.dense_output import astray, measure_inside
 
 SOON = 0.05  # of a step: a row so near to its start is as right as that
 SOONEST = 1e-3  # the same, of what is stiff
@@ -38,6 +38,13 @@ def felt(s, b, setting, method):
 
 
 @internal
+def of_none(s, r, b, setting, method, theta):
+    """Whether the row just measured is none of the motion, and the step may end there."""
+    may = setting.fixed_step == 0.0 and method[INSIDE_AT] > 0
+    return may and astray(s, r, b, setting, 0, theta)
+
+
+@internal
 def rows_until(s, r, b, setting, method):
     """Write the output rows of the step at hand; the one at its end is in b.out.
 
@@ -62,8 +69,11 @@ def rows_until(s, r, b, setting, method):
             if method[LOOK_AT] > 0:
                 call_look(method[LOOK_AT], s, r, b, setting, t_o, 0)
             soon = SOON if b.restless == 0 else SOONEST
-            if t_o - b.t > soon * b.h and felt(s, b, setting, method):
-                b.until = t_o - b.t
+            late = t_o - b.t
+            if late > soon * b.h and (
+                felt(s, b, setting, method) or of_none(s, r, b, setting, method, late / b.h)
+            ):
+                b.until = late
         if not all_finite(row) or b.until > 0.0:
             r.rows, r.next_row, r.opened = rows, next_row, 0
             return False

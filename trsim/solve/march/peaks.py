@@ -23,8 +23,8 @@ from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A1, I1, i8
-from trsim.solve.march.calls import BETWEEN_AT
-from trsim.solve.march.dense_output import build, call_measure_in
+from trsim.solve.march.calls import BETWEEN_AT, INSIDE_AT
+from trsim.solve.march.dense_output import astray, build, call_measure_in
 from trsim.solve.march.earlier import build_earlier, either_step, ends
 from trsim.solve.march.land import evaluate_inside
 from trsim.solve.march.polynomials import SURE, apart, one_way, polynomial, reach, settled, top
@@ -95,7 +95,7 @@ def between(s, r, b, setting, method, ahead):
     ahead: samples that are newer than the later of them.
     """
     share, now, last = setting.missed, r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
-    b.n_found, b.laid = 0, NOT_LAID
+    b.n_found, b.laid, b.astray = 0, NOT_LAID, 0
     inner = max(ENDS - r.n_samples, 1)
     last_one = r.sampled[r.newest] >= setting.t_end
     # an event cuts steps of any length
@@ -104,7 +104,9 @@ def between(s, r, b, setting, method, ahead):
         if not ready(r, b, ahead) and not last_one:
             guess(s, r, b, method, ahead, inner)
         else:
-            look_within(s, r, b, method, ahead, inner)
+            look_within(s, r, b, setting, method, (ahead, inner))
+    if b.astray > 0:
+        return
     bounds(r, b, ahead)
     for c in range(now.size):
         high, low = r.peak[PEAK_MAX, s.sought[c]], r.peak[PEAK_MIN, s.sought[c]]
@@ -135,11 +137,15 @@ def between(s, r, b, setting, method, ahead):
             if not (rises or falls):
                 continue
             b.n_found, b.laid = 0, NOT_LAID
-            look_within(s, r, b, method, ahead, inner)
+            look_within(s, r, b, setting, method, (ahead, inner))
+        if b.astray > 0:
+            return
         if rises:
-            search(s, r, b, method, ahead, (c, 1.0, enough))
+            search(s, r, b, setting, method, (ahead, c, 1.0, enough))
         if falls:
-            search(s, r, b, method, ahead, (c, -1.0, enough))
+            search(s, r, b, setting, method, (ahead, c, -1.0, enough))
+        if b.astray > 0:
+            return
 
 
 @internal
@@ -180,14 +186,14 @@ def guessed(s, r, b, ahead, c):
 
 
 @internal
-def search(s, r, b, method, ahead, what):
+def search(s, r, b, setting, method, what):
     """Look for an extreme of a channel between two neighbours, by its polynomial; the dense output
     is there.
 
-    what: the channel, 1 for a maximum or -1 for a minimum, and what may be missed.  A polynomial
-    that is much surer than that is taken at its word.
+    what: samples that are newer, the channel, 1 for a maximum or -1 for a minimum, and what may be
+    missed.  A polynomial that is much surer than that is taken at its word.
     """
-    c, sign, enough = what
+    ahead, c, sign, enough = what
     o, aside_before = s.sought[c], False
     for _ in range(TRIES):
         best = r.peak[PEAK_MAX, o] if sign > 0.0 else -r.peak[PEAK_MIN, o]
@@ -207,12 +213,16 @@ def search(s, r, b, method, ahead, what):
             break
         if b.n_found >= b.found.size:
             break
-        look(s, r, b, method, ahead, place)
+        look(s, r, b, setting, method, (ahead, place))
+        if b.astray > 0:
+            break
 
 
 @internal
-def look(s, r, b, method, ahead, place):
-    """Evaluate all channels at a place inside the step, and keep them in b.inside and b.found."""
+def look(s, r, b, setting, method, where):
+    """Evaluate all channels at a place inside the step, and keep them in b.inside and b.found,
+    unless they are none of the motion: then nothing more is looked for."""
+    ahead, place = where
     earlier, h = before(r, ahead), length(r, b, ahead)
     if not ready(r, b, ahead):
         if earlier:
@@ -221,19 +231,26 @@ def look(s, r, b, method, ahead, place):
             build(s, r, b, method)
     k, t = b.n_found, r.earlier_t if earlier else r.t
     place = min(place, t + h)
-    call_measure_in(b.measure_in, s, r, b, int(earlier), place, (place - t) / h)
+    theta = (place - t) / h
+    call_measure_in(b.measure_in, s, r, b, int(earlier), place, theta)
+    if method[INSIDE_AT] > 0 and astray(s, r, b, setting, int(earlier), theta):
+        b.astray = 1
+        return
     gather(s, b.full, s.out, b.inside[k])
     known_extremes(s, r, b, place)
     b.n_found, b.found[k] = k + 1, place
 
 
 @internal
-def look_within(s, r, b, method, ahead, inner):
+def look_within(s, r, b, setting, method, where):
     """`look` at `inner` places that part the time between two neighbours into equal parts."""
+    ahead, inner = where
     start, end = r.sampled[older(r, ahead + 1)], r.sampled[older(r, ahead)]
     for k in range(inner):
         place = start + (k + 1.0) / (inner + 1.0) * (end - start)
-        look(s, r, b, method, ahead, place)
+        look(s, r, b, setting, method, (ahead, place))
+        if b.astray > 0:
+            return
 
 
 @internal

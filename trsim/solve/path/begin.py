@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any
 
 from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.switches import LOOSE
 from trsim.errors import ModelError, ScenarioError
 from trsim.scenario.initial import Initial
 from trsim.solve.rest import standing, without_rates
@@ -29,9 +30,11 @@ def check(scenario: Any, mechanism: Mechanism) -> None:
                 (instance.section, instance.name),
             )
     for event in mechanism.stages.switches.events:
-        if event.turned:
+        names = mechanism.stages.switches.names
+        if any(names[n][0] != "drives" or to != LOOSE for n, to in event.turned):
             raise ScenarioError(
-                f"{event.said}, and a {method} knows events that record or end a run alone",
+                f"{event.said}, and a {method} knows events that record, end a run or let a drive "
+                "go",
                 f"leave it out, {INSTEAD}",
                 ("events", event.name),
             )

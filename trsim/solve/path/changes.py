@@ -52,7 +52,7 @@ class Looks:
         self.side = dict.fromkeys(range(len(self.events)), 0.0)
         self.left = [event.most for event in self.events]
         self.columns = {c.name: c.start for c in equations.mechanism.columns}
-        self.places = watched_places(w)
+        self.places = watched_places(w, bent_tables(equations.mechanism))
         self.sense = 0.0
 
     def gaps(self, place: Place) -> dict[int, tuple[float, float]]:
@@ -100,8 +100,8 @@ class Looks:
         return found
 
     def hold(self, t: float, which: int) -> None:
-        """Hold functions on the pieces they are on just after t, tables on none that sensors
-        read: they are smooth but for corners that Newton's method does not mind."""
+        """Hold functions on the pieces they are on just after t; smooth tables that sensors read on
+        none: their second derivatives jump, which Newton's method does not mind."""
         w = self.work
         if len(w.feature):
             hold_all(w, t, which)
@@ -134,7 +134,8 @@ class Looks:
             self.side[k] = float(np.sign(x))
 
     def hold_all(self, place: Place) -> None:
-        poses(self.work, place.y)
+        """Hold functions where they go on along the path."""
+        poses(self.work, self.moving(place))
         self.hold(place.t, BY_TIME)
         self.hold(place.t, BY_SENSORS)
 
@@ -159,7 +160,9 @@ class Looks:
         return found
 
     def directions(self, place: Place) -> None:
-        """Take directions of sliding where there was none."""
+        """Take directions of sliding, and pieces of functions, where there was none."""
+        now, held = self.pieces(place), self.work.tab[self.places]
+        self.work.tab[self.places] = np.where(held == FREE, now, held)
         for k, slip in enumerate(self.slips(place).tolist()):
             if abs(slip) > self.slow:
                 self.direction[k] = float(np.sign(slip))
@@ -222,15 +225,25 @@ def sensed_ones(w: Any) -> NDArray[np.int64]:
     return np.array([k for row in rows for k in row], np.int64)
 
 
-def watched_places(w: Any) -> NDArray[np.int64]:
-    """Places in tab of what corners are held on that are told: of operations, not of tables."""
+def bent_tables(mechanism: Any) -> set[int]:
+    """Offsets of tables with straight lines from point to point."""
+    return {
+        one.offset
+        for one in mechanism.functions
+        if one.spec.kind == "table" and one.spec.interpolation == "linear"
+    }
+
+
+def watched_places(w: Any, bent: set[int]) -> NDArray[np.int64]:
+    """Places in tab of what corners are held on that are told: of operations, and of tables that
+    are bent at their points."""
     found = []
     for row in w.feature:
         if row[SENSED] == 0:
             continue
         o = int(row[OFFSET])
         for place in w.held[row[HELD_FROM] : row[HELD_TO]].tolist():
-            if not (w.tab[o] == TABLE and place == o + HELD_OF_TABLE):
+            if o in bent or not (w.tab[o] == TABLE and place == o + HELD_OF_TABLE):
                 found.append(int(place))
     return np.array(found, np.int64)
 

@@ -9,6 +9,7 @@ halving.  Where steps shrink to nothing there is no balance ahead: fold.py looks
 
 import time
 from collections.abc import Generator
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from trsim.solve.path.balance import travel
 from trsim.solve.path.begin import begin, check
 from trsim.solve.path.changes import RUB, Change, Looks, stability
 from trsim.solve.path.fold import fold
+from trsim.solve.path.let_go import Held, kept, why
 from trsim.solve.path.log import Log
 from trsim.solve.path.place import RAMP, SLOW, Equations, Place
 from trsim.solve.path.results import APART, Results, slope
@@ -40,6 +42,7 @@ STEADY = 0.2  # of the time between rows: places that are nearer do not tell wha
 FIRST = 1e-4  # of the time between rows: how far ahead the direction of the start is taken
 SURE = 100.0  # times what full sliding takes, or further
 MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
+FULL = 1.0 - 1e-6  # of the largest friction there can be: less is no full sliding
 SEEN = 0.01  # of the path: in that time what slides goes further than full sliding takes
 AGAIN = 50  # changes at one place: it is none
 BLOCK = 500  # rows
@@ -64,6 +67,7 @@ class Path:
         self.begun = begin(scenario, mechanism)
         self.eq = Equations(mechanism, self.begun)
         self.eq.small = 1e-6 * min(self.every, self.end)
+        self.held = Held(mechanism)
         self.looks = Looks(self.eq, self.end)
         self.results = Results(self.eq, self.every)
         self.log = Log(self.looks, self.results)
@@ -128,6 +132,8 @@ class Path:
             )
         place = self.directed(place)
         self.looks.hold_all(place)
+        if not eq.rubs:  # on the pieces ahead
+            place = eq.place(0.0, place.y, place.lam) or place
         self.looks.directions(place)
         out = self.results.out(place, place.v * 0.0) if self.hears else None
         for k, (x, _) in enumerate(self.looks.values(place, out)):
@@ -189,9 +195,17 @@ class Path:
         there = eq.place(t, *found)
         if there is None or self.looks.hidden(place, there):
             return None
-        if eq.turning and self.looks.all_slide(there):
-            return eq.along_itself(there, SEEN * self.end)
+        if eq.turning and self.looks.all_slide(there) and self.is_full(there):
+            for _ in range(2 if eq.surfaces else 1):
+                there = eq.along_itself(there, SEEN * self.end)
         return there
+
+    def is_full(self, place: Place) -> bool:
+        """Whether friction on all surfaces is that of full sliding."""
+        if not self.eq.surfaces:
+            return True
+        out = self.results.out(place, 0.0 * place.v)
+        return all(out[rub] >= FULL * mu * out[load] for mu, load, rub in self.eq.surfaces)
 
     def way(self, y: Array, y1: Array) -> float:
         """The furthest way of a body, rad or of the mechanism's size."""
@@ -236,6 +250,8 @@ class Path:
         if self.log.reason:
             return place
         eq.set_phases(looks.closed)
+        if self.log.letting_go:
+            return self.let_go(place)
         if all(change.kind == RUB for change in changes) and changes:
             eq.anchor, self.results.turned = place.y.copy(), True
             return place
@@ -253,6 +269,52 @@ class Path:
             self.judge(there)
             self.anchored(there)
         return there
+
+    def let_go(self, place: Place) -> Place:
+        """The place as it goes on without drives that let go there, unless the path ends."""
+        before, log = self.eq, self.log
+        mechanism, gone = self.held.without(log.letting_go)
+        log.letting_go = []
+        if not gone:
+            return place
+        eq = Equations(mechanism, SimpleNamespace(y=place.y, mem=before.work.mem,
+                                                  branch=before.work.branch))  # fmt: skip
+        eq.small, eq.anchor, eq.load = before.small, before.anchor, before.load
+        self.change_to(eq)
+        self.looks.hold_all(place)
+        found = eq.solved(place.t, place.y, kept(before, eq, place.lam), None)
+        there = eq.place(place.t, *found) if found is not None else None
+        jump = self.way(place.y, there.y) if there is not None else 0.0
+        ends = self.ends_without(there, jump)
+        if there is None or ends:
+            self.change_to(before)
+            at = f"t = {place.t:.9g} s{log.where(place)}"
+            log.status, log.reason = "released", why(gone, at, ends)
+            return place
+        if jump > BESIDE:
+            what = f"{', '.join(gone)} let go, and the path jumps by {jump:.3g} of"
+            log.falls.append((place.t, f"{what} the mechanism's size"))
+            self.results.jumped = True
+        self.results.go_on_with(eq, there)
+        self.anchored(there)
+        return there
+
+    def ends_without(self, there: Place | None, jump: float) -> str:
+        """Why a path does not go on where drives let go; empty where it does."""
+        if there is None:
+            return "nothing holds it there, and no equilibrium is near"
+        self.judge(there)
+        if self.looks.sense < 0.0:
+            return "the equilibrium is unstable without, and the mechanism goes on by itself"
+        if not self.held.still:
+            return ""
+        left = "nothing is left that follows t, and the mechanism rests"
+        return f"{left} {jump:.3g} of its size away" if jump > BESIDE else f"{left} there"
+
+    def change_to(self, eq: Equations) -> None:
+        """Follow the path by other equations."""
+        self.eq = self.looks.eq = self.log.eq = eq
+        self.looks.work = eq.work
 
     # --- what is kept --------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
+from trsim.assemble.switches import UserEvent
 from trsim.solve.march import record as rec
 from trsim.solve.path.changes import CONTACT, PIECE, RUB, SENSE, WATCH, Change, Looks
 from trsim.solve.path.place import Place
@@ -31,6 +32,7 @@ class Log:
         self.status: Ended = "done"
         self.reason = ""
         self.falls: list[tuple[float, str]] = []
+        self.letting_go: list[UserEvent] = []  # events that let drives go at this place
         self.fired = {event.name: 0 for event in looks.events if event.kind != "limit"}
 
     def note(self, place: Place, change: Change) -> None:
@@ -63,6 +65,8 @@ class Log:
         looks.left[k] -= 1
         if event.name in self.fired:
             self.fired[event.name] += 1
+        if event.turned:
+            self.letting_go.append(event)
         if event.record:
             out = self.results.out(place, np.zeros(self.eq.n))
             self.results.recorded.append(np.array([place.t, k, *out]))

@@ -42,6 +42,7 @@ EXACT = 1e-10  # the same, of a matrix that may be none of the place
 ITERATIONS = 25
 CHORD = 0.2  # what a step must be of the one before, or the matrix is made anew
 TURN = 0.3  # rad, or of the size: a step of Newton's method goes no further
+SURFACES = ("surface", "edge")  # travel of what is touched in any direction
 KINETIC = 1  # of the bristles of a law that sticks: which number is the coefficient of sliding
 # what a quadrature of five points is made of, on 0..1
 NODE, WEIGHT = (part / 2.0 for part in np.polynomial.legendre.leggauss(5))
@@ -83,6 +84,19 @@ def sliding(mechanism: Mechanism) -> Any:
     return model.replaced(con=con, par=par, shared_out=0, plain=0), found
 
 
+def rough_surfaces(mechanism: Mechanism, w: Scene) -> list[tuple[float, int, int]]:
+    """Surfaces and seals that rub, in any direction: coefficient, columns of load and friction."""
+    columns = {c.name: c.start for c in mechanism.columns}
+    found = []
+    for e, instance in enumerate(mechanism.instances):
+        if instance.row.travel in SURFACES and instance.element.slides:
+            law, first = instance.element.slides
+            if w.con[e, law] != CODES["none"] and f"{instance.name}.friction_force" in columns:
+                load, rub = (f"{instance.name}.{word}_force" for word in ("normal", "friction"))
+                found.append((float(w.par[e, first]), columns[load], columns[rub]))
+    return found
+
+
 class Equations:
     """The balance of a mechanism: what is held, and Newton's method."""
 
@@ -106,7 +120,9 @@ class Equations:
                             w.n_r - 1)  # fmt: skip
         self.anchor = begun.y.copy()
         # surfaces that slide in several ways at once, whose direction turns
-        self.turning = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
+        self.surfaces = rough_surfaces(mechanism, w)
+        rubbed = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
+        self.turning = rubbed or (w.d == 6 and len(self.surfaces) > 0)
         self.stiffest = 0.0  # N*m, of the matrix made last
         self.frozen = False  # velocities of a state are as they are
         self.states = self.driven()

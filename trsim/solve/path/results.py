@@ -54,14 +54,25 @@ class Results:
         self.turned = self.jumped = False
         self.residual = 0.0
         self.zero = 0.0  # J, the energy at the start
-        self.drives = [
-            (f"drives.{i.name}", int(AnyDrive(w, e).row), w.size if AnyDrive(w, e).rotates else 1.0)
-            for e, i in enumerate(mechanism.instances)
-            if i.section == "drives" and AnyDrive(w, e).row >= 0
-        ]
+        self.drives = [one for one in self.rigid_drives() if one[1] >= 0]
         # of every drive: what inertia adds, what dampers do, its force; each with its time
         self.most = np.zeros((len(self.drives), 3, 2))
         self.largest_energy = self.largest_residual = 0.0
+
+    def rigid_drives(self) -> list[tuple[str, int, float]]:
+        """Drives: name, row, -1 of what has none, and the lever of their force."""
+        w = self.w
+        return [
+            (f"drives.{i.name}", int(AnyDrive(w, e).row), w.size if AnyDrive(w, e).rotates else 1.0)
+            for e, i in enumerate(self.eq.mechanism.instances)
+            if i.section == "drives"
+        ]
+
+    def go_on_with(self, equations: Equations, place: Place) -> None:
+        """Take places of other equations from now on, of which this is the first."""
+        self.eq, self.w, self.last = equations, equations.work, place
+        rows = {name: row for name, row, _ in self.rigid_drives()}
+        self.drives = [(name, rows[name], lever) for name, _, lever in self.drives]
 
     def out(self, place: Place, a: Array) -> Array:
         """All channels at a place with its accelerations."""
@@ -151,7 +162,7 @@ class Results:
 
     def inertia(self, place: Place, a: Array) -> None:
         """What inertia would add to the forces of rigid drives."""
-        if not self.drives:
+        if all(row < 0 for _, row, _ in self.drives):
             return
         n, w = self.eq.n, self.w
         force = np.zeros(n + self.eq.m)
@@ -167,6 +178,8 @@ class Results:
         damped[:n] = g[0, :n] - g[1, :n]
         inertia, dampers = place.inverse @ -force, place.inverse @ damped
         for k, (_, row, _) in enumerate(self.drives):
+            if row < 0:
+                continue
             for at, x in enumerate((inertia[n + row], dampers[n + row], place.lam[row])):
                 if abs(x) > self.most[k, at, 0]:
                     self.most[k, at] = abs(x), place.t
