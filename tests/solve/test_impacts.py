@@ -588,3 +588,20 @@ solver: {end: 0.1}
 """
     with pytest.raises(ModelError, match="one node of a flexible bar"):
         built(text)
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_losses_of_a_contact_are_those_of_its_impacts_too(planar):
+    """A ball thrown along the floor: what its contact has taken is what the books say, row by row."""
+    text = BALL.replace(
+        "inertia: 1.6e-5", "inertia: [1.6e-5, 1.6e-5, 1.6e-5], velocity: [0.5, 0, 0]"
+    )
+    text = text.replace(
+        "slowest_impact: 1e-4",
+        "slowest_impact: 1e-4, friction: {law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1e-3}",
+    )
+    r = run(f"planar: {planar}\n{text}output: {{channels: ['*', 'floor.*']}}\n")
+    for loss, book in (("damping_loss", "impacts"), ("friction_loss", "friction")):
+        taken, booked = r[f"floor.{loss}"], -r[f"energy.work.{book}"]
+        assert booked[-1] > 1e-3
+        assert taken == pytest.approx(booked, abs=1e-12)

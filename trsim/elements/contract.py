@@ -184,6 +184,7 @@ class Contact(NamedTuple):
     impact: Impact | None = None
     states: int = 1  # how many such entries there are
     known_to: float = inf  # m, the depth to which its law is given
+    lost: int = -1  # entry of z with what damping has taken, J; what friction has, behind it
 
 
 class ContactNumbers(Columns, par="contact_par"):

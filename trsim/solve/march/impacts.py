@@ -225,6 +225,10 @@ class _Striking:
         r.y[first + IMPACTS] += found.work
         r.y[first + FRICTION] += done - found.work
         r.y[first + DRIVES] += drives
+        lost = self.mechanism.instances[e].row.contact.lost
+        if lost >= 0:
+            r.y[first + lost] -= found.work
+            r.y[first + lost + 1] -= done - found.work
         note_event.python(r, b, self.t, rec.IMPACT, e, speed)
         line = b.events[r.event_rows - 1]
         line[rec.EVENT_WORK], line[rec.EVENT_IMPULSE] = done, found.impulse[0]
