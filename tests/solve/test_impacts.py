@@ -592,13 +592,14 @@ solver: {end: 0.1}
 
 @pytest.mark.parametrize("planar", ["true", "false"])
 def test_losses_of_a_contact_are_those_of_its_impacts_too(planar):
-    """A ball thrown along the floor: what its contact has taken is what the books say, row by row."""
+    """A ball thrown along the floor: its contact has taken what the books say, row by row."""
     text = BALL.replace(
         "inertia: 1.6e-5", "inertia: [1.6e-5, 1.6e-5, 1.6e-5], velocity: [0.5, 0, 0]"
     )
     text = text.replace(
         "slowest_impact: 1e-4",
-        "slowest_impact: 1e-4, friction: {law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1e-3}",
+        "slowest_impact: 1e-4, "
+        "friction: {law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1e-3}",
     )
     r = run(f"planar: {planar}\n{text}output: {{channels: ['*', 'floor.*']}}\n")
     for loss, book in (("damping_loss", "impacts"), ("friction_loss", "friction")):

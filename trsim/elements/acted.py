@@ -25,8 +25,8 @@ class Part(NamedTuple):
 def parts_of(instance):
     """Its rows by their places; of most elements all together."""
     element, row = instance.element, instance.row
-    if element.parts:
-        return element.parts(row)
+    if element.bearings:
+        return element.bearings(row)
     places = element.acts_at(row) if element.acts_at else ()
     return (Part(0, len(element.rows), places),)
 

@@ -327,7 +327,7 @@ class Element:
     # which bodies it holds
     acts_at: Callable[[Row], tuple] | None = None
     # (row) -> acted.Part of rows that hold bodies at places of their own.  None: all at one
-    parts: Callable[[Row], tuple] | None = None
+    bearings: Callable[[Row], tuple] | None = None
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged

@@ -98,7 +98,7 @@ def measure(t, scene, e, o):
     out[o + 6], out[o + 7] = sqrt(dot(locating, locating)), sqrt(dot(floating, floating))
 
 
-def parts(row):
+def bearings(row):
     """Its rows by the bearing they belong to."""
     own = Own.of(row)
     return Part(0, 3, at_both(row)), Part(3, 2, ((own.i, own.q_i), (own.j, own.q_j)))
@@ -118,8 +118,8 @@ ELEMENT = joint(
     coordinates=("angle",),
     pack=pack,
     reach=reach,
-    acts_at=lambda row: tuple(place for part in parts(row) for place in part.places),
-    parts=parts,
+    acts_at=lambda row: tuple(place for part in bearings(row) for place in part.places),
+    bearings=bearings,
     kernels={"measure": measure},
     channels=(
         Channel("locating_force", "N", "force on the second body at this bearing, world axes", 3),

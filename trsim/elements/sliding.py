@@ -170,7 +170,7 @@ def check_sizes(spec, parts, joint, at):
     """What rubs, in words.  Refuses sizes that it does not have, and those that are missing."""
     x, angle = parts[0], any(part.kind == "angle" for part in parts)
     what = "a hinge" if x.kind == "angle" else "a slide"
-    if joint.element.parts:
+    if joint.element.bearings:
         what = "a shaft"
     elif lead(at.scenario.joints[x.joint]) != 0.0:
         what = "a thread"
