@@ -348,7 +348,11 @@ FIXED = {
              "contact_length": "m", "force": "N"},
     "surface_contact": {"normal_force": "N", "friction_force": "N", "contact_force": "N",
                         "penetration": "m", "penetration_rate": "m/s", "sliding_speed": "m/s",
-                        "force_behind": "N", "place": "m", "force": "N"},
+                        "rolling_speed": "m/s", "patch_radius": "m", "damping_loss": "J",
+                        "friction_loss": "J", "force_behind": "N", "force_at_seam": "N",
+                        "place": "m", "force": "N"},
+    "shaft": {"locating_force": "N", "floating_force": "N", "locating_load": "N",
+              "floating_load": "N"},
 }  # fmt: skip
 # seen in the scene above
 DEPENDS = {

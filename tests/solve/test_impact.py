@@ -193,7 +193,7 @@ def test_bristles_begin_undeflected_at_every_touch(method):
     def deflection(end):
         r = run(STICKING.format(method=method, end=end))
         model = r.mechanism.model
-        return r.outcome.record.y[model.n_q + model.n_v + model.contact_state[0, 0]]
+        return r.outcome.record.y[model.n_q + model.n_v + model.contact_state[0]]
 
     r = run(STICKING.format(method=method, end=0.02))
     touches = r.events[r.events[:, EVENT_KIND] == ONSET][:, EVENT_TIME]
