@@ -20,13 +20,24 @@ from trsim.cli import main
 from trsim.errors import FileError, UsageError
 from trsim.report.page import Cell, Line, Points, Section, Table, Text, page
 from trsim.store.read import read
-from trsim.studies.claim import LAW, WORTH
-from trsim.studies.judge import OF_LAWS, shown
+from trsim.studies.claim import (
+    BOOKKEEPING,
+    CHOSEN,
+    GEOMETRY,
+    INDEPENDENT,
+    LAW,
+    TUNED,
+    WORTH,
+    Claim,
+    Reading,
+)
+from trsim.studies.judge import OF_LAWS, Row, shown
 from trsim.studies.numbers import number, word
 from trsim.studies.rules import (
     CONFIRMED,
     CONTRADICTED,
     UNDETERMINED,
+    Judged,
     alike,
     exact,
     falling,
@@ -39,6 +50,7 @@ from trsim.studies.rules import (
 )
 from trsim.studies.runs import Member, Runs
 from trsim.studies.study import paper
+from trsim.studies.tables import tally
 from trsim.studies.thrust_reverser import STUDY
 from trsim.studies.thrust_reverser.claims import CLAIMS
 from trsim.studies.thrust_reverser.figures import FIGURES
@@ -130,8 +142,51 @@ def test_claims_are_of_the_study(scenario):
     assert len(set(keys)) == len(keys)
     for claim in CLAIMS:
         assert claim.section in STUDY.sections and claim.worth in WORTH
+        assert {reading.worth for reading in claim.readings} <= {"", *WORTH}
         names = [reading.name for reading in claim.readings]
         assert len(set(names)) == len(names)
+
+
+def worths():
+    """What agreement with each reading of a claim is worth, by its key."""
+    return {c.key: {r.name: r.worth or c.worth for r in c.readings} for c in CLAIMS}
+
+
+def test_what_shares_its_data_with_the_fit_is_no_finding():
+    """The nine peaks were fitted: the same forces give trends, orderings and advice."""
+    of = worths()
+    for key in ("one_rises", "one_falls", "two_rises", "two_falls", "two_opposite",
+                "one_alike_each", "one_above_each", "two_alike_each", "advice", "advice_faster",
+                "sticks_earlier"):  # fmt: skip
+        assert {*of[key].values()} == {TUNED}, key
+    assert of["speed_triple"] == {"B": CHOSEN, "A and B": CHOSEN, "at A": INDEPENDENT}
+
+
+def test_geometry_and_bookkeeping_are_told_apart():
+    of = worths()
+    assert of["phase_range"]["eccentricity at B"] == GEOMETRY
+    assert of["phase_range"]["velocity at B"] == INDEPENDENT
+    assert {*of["displacement"].values()} == {GEOMETRY}
+    assert {*of["coulomb"].values()} == {BOOKKEEPING}
+
+
+def test_every_worth_has_a_line_of_its_own_in_the_tally():
+    claims = [
+        Claim("a", "1", "", "a", rising(), (Reading("", ()), Reading("g", (), worth=GEOMETRY))),
+        Claim("b", "1", "", "b", rising(), (Reading("", ()),), TUNED),
+        Claim("c", "1", "", "c", rising(), (Reading("", ()),), BOOKKEEPING),
+    ]
+    verdicts = iter([CONFIRMED, CONTRADICTED, CONFIRMED, UNDETERMINED])
+    rows = [Row(claim, reading, Judged(next(verdicts), "", 1, 1), (), ())
+            for claim in claims for reading in claim.readings]  # fmt: skip
+    found = {line.cells[0].text: [cell.text for cell in line.cells[1:]]
+             for line in tally(rows).lines}  # fmt: skip
+    assert found == {
+        "independent of our choices": ["1", "0", "0"],
+        "by construction": ["1", "0", "0"],
+        "geometry": ["0", "1", "0"],
+        "bookkeeping": ["0", "0", "1"],
+    }
 
 
 def test_every_figure_of_the_study_is_drawn(scenario):

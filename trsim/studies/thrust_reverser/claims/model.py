@@ -1,6 +1,6 @@
 """Sections 3 and 6.2 of the study: contact and friction laws, the pendulum that verifies."""
 
-from trsim.studies.claim import LAW, Claim, Series, one
+from trsim.studies.claim import BOOKKEEPING, LAW, Claim, Series, one
 from trsim.studies.rules import exact, undecided
 
 CLAIMS = (
@@ -15,14 +15,14 @@ CLAIMS = (
         "coulomb", "3.2", "3a",
         "Coulomb's friction force jumps where the motion stops.",
         exact(0.5999, 0.6001, "jumps by twice the coefficient of friction"),
-        one(Series("jump over normal force", LAW, "jump:coulomb")),
+        one(Series("jump over normal force", LAW, "jump:coulomb")), BOOKKEEPING,
     ),
     Claim(
         "modified_coulomb", "3.2", "3b",
         "The modified law has no such jump.",
         exact(0.0, 1e-9, "no jump at rest"),
         one(Series("jump over normal force", LAW, "jump:modified_coulomb")),
-        note="in return a loaded joint never rests: it creeps at v0, 0.1 mm/s",
+        BOOKKEEPING, "in return a loaded joint never rests: it creeps at v0, 0.1 mm/s",
     ),
     Claim(
         "pendulum", "6.2", "7",
