@@ -18,7 +18,9 @@ from trsim.analyse.fluctuation import fluctuation
 from trsim.analyse.outputs import scalar
 from trsim.cli import main
 from trsim.errors import FileError, UsageError
+from trsim.report.display import Shown
 from trsim.report.page import Cell, Line, Points, Section, Table, Text, page
+from trsim.report.style import look
 from trsim.store.read import read
 from trsim.studies.claim import (
     BOOKKEEPING,
@@ -31,6 +33,7 @@ from trsim.studies.claim import (
     Claim,
     Reading,
 )
+from trsim.studies.drawing import UNITS
 from trsim.studies.judge import OF_LAWS, Row, shown
 from trsim.studies.numbers import number, word
 from trsim.studies.rules import (
@@ -39,6 +42,7 @@ from trsim.studies.rules import (
     UNDETERMINED,
     Judged,
     alike,
+    departing,
     exact,
     falling,
     interval,
@@ -53,7 +57,7 @@ from trsim.studies.study import paper
 from trsim.studies.tables import tally
 from trsim.studies.thrust_reverser import STUDY
 from trsim.studies.thrust_reverser.claims import CLAIMS
-from trsim.studies.thrust_reverser.figures import FIGURES
+from trsim.studies.thrust_reverser.figures import FIGURES, chain
 from trsim.sweep.go import go
 from trsim.sweep.plan import plan
 
@@ -93,6 +97,12 @@ def cases(*means, spread=MEMBERS):
         (steadier(), cases(1.0, 2.0, 1.0, 1.1), CONFIRMED),
         (steadier(), cases(1.0, 1.1, 1.0, 2.0), CONTRADICTED),
         (steadier(), cases(1.0, 1.1, 1.0, 1.1), UNDETERMINED),
+        (departing(), cases(1.0, 1.1, 1.0, 2.0), CONFIRMED),
+        (departing(), cases(1.0, 1.1, 2.0, 1.0), CONFIRMED),  # the other way, and farther
+        (departing(), cases(1.0, 2.0, 1.0, 1.1), CONTRADICTED),
+        (departing(), cases(2.0, 1.0, 1.1, 1.0), CONTRADICTED),
+        (departing(), cases(1.0, 1.1, 1.0, 1.12), UNDETERMINED),
+        (departing(), cases(1.0, 0.0, 1.0, 2.0), UNDETERMINED),
         (exact(0.9, 1.1, "x"), np.array([[1.0]]), CONFIRMED),
         (exact(0.9, 1.1, "x"), np.array([[2.0]]), CONTRADICTED),
         (undecided("no"), cases(1.0), UNDETERMINED),
@@ -104,7 +114,9 @@ def test_verdicts(rule, values, verdict):
     assert found.told and rule.words
 
 
-@pytest.mark.parametrize("rule", [rising(), falling(), ratio(1.0, 3.0), steadier(), alike(0.1)])
+@pytest.mark.parametrize(
+    "rule", [rising(), falling(), ratio(1.0, 3.0), steadier(), departing(), alike(0.1)]
+)
 def test_one_run_proves_nothing(rule):
     assert rule.judge(cases(1.0, 2.0, 1.5, 1.6)[:, :1]).verdict == UNDETERMINED
 
@@ -190,7 +202,7 @@ def test_every_worth_has_a_line_of_its_own_in_the_tally():
 
 
 def test_every_figure_of_the_study_is_drawn(scenario):
-    panels = {"3": "ab", "7": "ab", "8": "", "9": "abcdef", "10": "abcd", "11": "abcd",
+    panels = {"1": "", "3": "ab", "7": "ab", "8": "", "9": "abcdef", "10": "abcd", "11": "abcd",
               "12": "abcd", "13": "ab", "14": "abcdefgh", "15": "ab", "16": "abcd", "17": "ab",
               "18": "abcde", "19": "ab", "20": "ab", "21": "", "22": "", "23": "abc",
               "24": "abc", "25": "abc", "26": "abc"}  # fmt: skip
@@ -321,6 +333,25 @@ def test_figures_are_drawn(page_folder):
         assert 0.005 < drawn(path) < 0.5, path.name
 
 
+def test_the_chain_is_drawn_where_the_run_has_it(folder, tmp_path):
+    """At its start as its scenario draws it; B moves aft with the fairing, 0.5 m/s."""
+    shown = Shown(Runs(folder).stated("ideal").run, "", UNITS)
+    with look():
+        figure = chain.figure_1([shown] * 9)
+        figure.savefig(tmp_path / "a.png")
+    begun, touched, _ = figure.axes[:3]
+    joints = [[tuple(line.get_xydata()[0]) for line in axes.lines if line.get_marker() == "o"]
+              for axes in (begun, touched)]  # fmt: skip
+    a, p, q, b = joints[0]
+    assert np.hypot(*np.subtract(p, a)) == pytest.approx(0.220, abs=1e-5)
+    assert np.hypot(*np.subtract(q, b)) == pytest.approx(0.195, abs=1e-4)
+    assert b == pytest.approx((-0.242, 0.241), abs=1e-5)
+    assert joints[1][0] == pytest.approx(a, abs=1e-5)
+    assert joints[1][3] == pytest.approx((-0.092, 0.241), abs=1e-3)
+    assert len(figure.axes) == 7
+    assert 0.02 < drawn(tmp_path / "a.png") < 0.5
+
+
 def test_the_same_every_time(page_folder, folder, tmp_path):
     paper(STUDY, folder, tmp_path, figures=FIGURES[:0])
     for name in ("claims.csv", "numbers.csv"):
@@ -384,6 +415,29 @@ def test_numbers_of_a_run(member):
     assert number(member, f"place:stroke{whole}").value == pytest.approx(x.max())
     assert number(member, "orbit:B").value > 0.0
     assert 0.0 < number(member, "flight:B").value < 1.0
+
+
+def test_the_free_motions_of_a_run(folder):
+    """The door of the ideal chain moves by the drive or against spring and lug: 12 unknowns, 11
+    rows; a pin with play holds none of its two."""
+    runs = Runs(folder)
+    assert number(runs.stated("ideal"), "mechanism:mobility") == (1.0, "-")
+    assert number(runs.stated("b_03"), "mechanism:mobility") == (3.0, "-")
+    with pytest.raises(UsageError):
+        number(runs.stated("ideal"), "mechanism:mobilty")
+
+
+def test_what_was_not_judged_before(scenario):
+    """Two freedoms and what makes one motion of them, Coulomb, rod and load, joints and load."""
+    of = {claim.key: claim for claim in CLAIMS}
+    for key in ("two_freedoms", "unique", "unique_needs", "coulomb_converges", "rod_load",
+                "rod_force_fluctuation", "number_acceleration", "load_force"):  # fmt: skip
+        assert of[key].readings, key
+    words = {s.word for r in of["load_force"].readings for s in r.series}
+    assert all(word.startswith("fluctuation:") and "contact_force" in word for word in words)
+    origins = {case: STUDY.origin(case) for case in scenario["cases"] if "kicked" in case}
+    assert origins == {"kicked": "ideal", "no_spring_kicked": "no_spring",
+                       "no_lug_kicked": "no_lug", "neither_kicked": "neither"}  # fmt: skip
 
 
 def test_windows_are_of_stroke(member):

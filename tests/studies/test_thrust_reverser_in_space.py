@@ -27,9 +27,11 @@ from trsim.studies.single import (
     apart,
     below,
     greatest,
+    multiple,
     near,
     opposite,
     steps,
+    unlike,
 )
 from trsim.studies.study import paper
 from trsim.studies.thrust_reverser import STUDY
@@ -141,6 +143,8 @@ def column(*values):
         (near(0.05), (1.0, 1.04), (1.0, 1.06)),
         (apart(), (10, 5, 9), (10, 5, 7)),
         (opposite(), (1, 2, 2, 1), (1, 2, 3, 4)),
+        (multiple(10.0), (3, 31), (3, 29)),
+        (unlike(0.01), (1.0, 1.0, 1.02), (1.0, 1.005, 1.0)),
         (greatest(above(), 2), (1, 2, 3, 0), (1, 3, 2, 3)),
     ],
 )

@@ -183,6 +183,20 @@ def steadier() -> Rule:
     return of_positive("largest over smallest: less in the second group than in the first", judge)
 
 
+def departing() -> Rule:
+    """The second two of four cases are farther apart, as a ratio, than the first two."""
+
+    def judge(values: Array) -> Judged:
+        first, second = np.abs(np.log(values[1::2] / values[::2]))
+        more = second - first
+        holds, b = more > SEEN, interval(more)
+        told = " and ".join(f"{math.exp(float(np.mean(x))):.4g}" for x in (first, second))
+        words = f"apart by factors of {told}"
+        return counted(verdict(b.low > SEEN, b.high < SEEN), words, holds)
+
+    return of_positive("the second pair farther apart than the first, as ratios", judge)
+
+
 def undecided(reason: str) -> Rule:
     """Nothing that could be measured decides it."""
     return Rule("nothing measured decides", lambda _: Judged(UNDETERMINED, reason, 0, 0))

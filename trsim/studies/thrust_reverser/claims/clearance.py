@@ -135,6 +135,17 @@ CLAIMS = (
         ),
     ),
     Claim(
+        "load_force", "7.1.1", "9e, 9f",
+        "The fluctuation of the contact forces is weakened as the load grows.",
+        falling(0.1),
+        tuple(
+            Reading(f"at {pin}, {label}", (
+                Series("150 to 250 mm", case, f"fluctuation:{pin}.contact_force{EARLY}"),
+                Series("350 to 480 mm", case, f"fluctuation:{pin}.contact_force{LATE}")))
+            for pin in "AB" for label, case in AB
+        ),
+    ),
+    Claim(
         "phase_range", "7.1.1", "10a, 10c",
         "The phase diagram of the journal spreads with the clearance.",
         rising(),
