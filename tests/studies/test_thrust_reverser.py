@@ -20,7 +20,7 @@ from trsim.cli import main
 from trsim.errors import FileError, UsageError
 from trsim.report.display import Shown
 from trsim.report.page import Cell, Line, Points, Section, Table, Text, page
-from trsim.report.style import look
+from trsim.report.style import look, panels
 from trsim.store.read import read
 from trsim.studies.claim import (
     BOOKKEEPING,
@@ -33,7 +33,7 @@ from trsim.studies.claim import (
     Claim,
     Reading,
 )
-from trsim.studies.drawing import UNITS
+from trsim.studies.drawing import UNITS, enlarged
 from trsim.studies.judge import OF_LAWS, Row, shown
 from trsim.studies.numbers import number, word
 from trsim.studies.rules import (
@@ -112,6 +112,12 @@ def test_verdicts(rule, values, verdict):
     found = rule.judge(values)
     assert found.verdict == verdict
     assert found.told and rule.words
+
+
+def test_scatter_is_no_effect():
+    """Two cases that scatter far, but alike in the mean, are no farther apart for it."""
+    calm, wild = cases(1.0, 1.05), np.array([[1.0, 1.0, 1.0, 1.0], [2.0, 0.5, 2.0, 0.5]])
+    assert departing().judge(np.concatenate([calm, wild])).verdict == UNDETERMINED
 
 
 @pytest.mark.parametrize(
@@ -225,12 +231,13 @@ def test_the_members_of_the_study(scenario):
     assert members[0] == (1, "0 mm", "1e-6*loose")
 
 
-CHAINS = {"ideal": "ideal", "a_03": "clearance_a_0.3mm", "b_03": "clearance_b_0.3mm"}
+CHAINS = {"ideal": "ideal", "a_03": "clearance_a_0.3mm", "b_03": "clearance_b_0.3mm",
+          "a_03_fine": "clearance_a_0.3mm", "b_03_fine": "clearance_b_0.3mm"}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A study of three cases of two members, a third of a stroke."""
+    """A study of three cases of two members, a third of a stroke; two of them for figures."""
     place = tmp_path_factory.mktemp("study") / "scenarios"
     place.mkdir()
     for path in (SCENARIOS / "thrust_reverser").glob("*.yaml"):
@@ -326,6 +333,39 @@ def test_the_page_stands_alone(page_folder):
     assert text.count("data:image/png") == 4
     for claim in CLAIMS:
         assert f'id="claim-{claim.key}"' in text
+
+
+def test_panels_have_the_letters_of_the_study(folder):
+    runs = Runs(folder)
+    with look():
+        for one in FIGURES:
+            if one.panels and one.names and runs.has(*one.names):
+                titles = [axes.get_title("left") for axes in one.made(runs).axes]
+                letters = [title[1] for title in titles if title.startswith("(")]
+                assert "".join(letters) == one.panels, one.number
+
+
+def test_what_is_enlarged_fills_its_panel():
+    with look():
+        axes = panels(1)[1]
+    t = np.linspace(0.0, 1.0, 1001)
+    axes[0, 0].plot(t, 100.0 * t)
+    axes[0, 0].plot(t, np.where(np.abs(t - 0.35) < 1e-3, -7.0, 0.0))
+    enlarged(axes[0, 0], 0.3, 0.4)
+    assert axes[0, 0].get_xlim() == (0.3, 0.4)
+    low, high = axes[0, 0].get_ylim()
+    assert (low, high) == pytest.approx((-7.0 - 2.35, 40.0 + 2.35))
+
+
+def test_what_is_enlarged_is_the_member_as_stated(scenario):
+    """A case with fine rows has its motion from the case it is named after."""
+    for name, case in scenario["cases"].items():
+        if name.endswith("_fine"):
+            assert case["extends"] == name.removesuffix("_fine")
+            assert set(case) <= {"extends", "sweep", "output", "solver"} and case["sweep"] is None
+            tolerance = case.get("solver", {}).get("tolerance", "1e-6*loose")
+            assert tolerance == scenario["sweep"]["solver.tolerance"][0]
+            assert ("solver" in case) == ("flexible" in name)
 
 
 def test_figures_are_drawn(page_folder):

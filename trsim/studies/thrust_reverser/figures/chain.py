@@ -14,6 +14,8 @@ from trsim.studies.thrust_reverser.figures.mechanism import COWL, DOOR, GROUND, 
 TIMES = (0.0, 0.3, 1.0)  # s: at the start, at the touch of the lug, at the end
 HULL = np.array([[-0.272, 0.262], [0.528, 0.262], [0.528, 0.288], [-0.272, 0.288]])  # m, as drawn
 LUG = np.array([-0.094784, 0.156003])  # m: its end, as drawn
+NAMED = {"A": (-8, 6), "B": (-7, -8), "P": (-9, 4), "Q": (8, 5)}  # points, of the letters
+BESIDE = 9.0  # points, of a number from its line
 WITH = ("spring and lug", "no spring", "no lug", "neither")  # two cases each, at rest and swung
 STARTS = (
     *((WITH[0], "ideal"), ("", "kicked"), (WITH[1], "no_spring"), ("", "no_spring_kicked")),
@@ -28,19 +30,20 @@ class Part(NamedTuple):
     ends: tuple[str, str]
     number: str
     colour: str
+    along: float = 0.5  # of the line, where the number stands
 
 
 PARTS = (
     Part("door", ("B", "Q"), "8", DOOR),
     Part("large_rod", ("A", "P"), "2", ROD),
     Part("transfer", ("P", "Q"), "3", LINK),
-    Part("transfer", ("P", "lug"), "7", LINK),
+    Part("transfer", ("P", "lug"), "7", LINK, 1.0),
 )
 
 
 def figure_1(shown: list[Shown]) -> Any:
     """The chain at three times; below, the door from two starts each, with and without them."""
-    figure, grid = panels(2, 1, height=2.75, width=7.2, height_ratios=(1.0, 1.1))
+    figure, grid = panels(2, 1, height=2.3, width=7.6, height_ratios=(0.8, 1.0))
     rows = [a.get_subplotspec() for a in grid[:, 0]]
     for a in grid[:, 0]:
         a.remove()
@@ -67,29 +70,31 @@ def side(axes: Any, moved: Motion, t: float) -> None:
 
     hull = np.array([where("fairing", np.append(corner, 0.0)) for corner in HULL])
     axes.fill(*hull.T, color=COWL)
-    label(axes, hull[:2].mean(axis=0) + np.array([0.0, 0.013]), "4", "#5f7387")
+    label(axes, hull[0], "4", (12, 6), "#33475b")
     for part in PARTS:
         ends = np.array([where(part.body, at[name]) for name in part.ends])
         axes.plot(*ends.T, color=part.colour, lw=2.4, solid_capstyle="round", zorder=3)
-        label(axes, ends.mean(axis=0), part.number, part.colour)
+        x, y = BESIDE * (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+        at_line = ends[0] + part.along * (ends[1] - ends[0])
+        label(axes, at_line, part.number, (y, -x), part.colour)
     for name, body in (("A", "large_rod"), ("P", "large_rod"), ("Q", "door"), ("B", "door")):
         x, y = where(body, at[name])
         axes.plot(x, y, "o", ms=4, mfc="white", mec="black", mew=0.9, zorder=5)
-        axes.annotate(name, (x, y), xytext=(-7, 5), textcoords="offset points", fontsize=8)
-    hinge = where("door", at["B"])
-    axes.annotate("6", hinge, xytext=(-2, 14), textcoords="offset points", fontsize=8,
-                  color=HOUSING, fontweight="bold")  # fmt: skip
+        label(axes, (x, y), name, NAMED[name], "black", "normal")
+    label(axes, where("door", at["B"]), "6", (-9, 4), HOUSING)
     axes.plot([-0.06, 0.06], [-0.012, -0.012], color=GROUND, lw=3)
-    label(axes, np.array([0.06, -0.012]), "1", GROUND)
+    label(axes, (-0.06, -0.012), "1", (-8, 0), GROUND)
     axes.set_aspect("equal")
-    axes.set_xlim(-0.34, 0.42)
-    axes.set_ylim(-0.06, 0.34)
+    axes.set_xlim(-0.31, 0.35)
+    axes.set_ylim(-0.06, 0.32)
 
 
-def label(axes: Any, at: Array, number: str, shade: str) -> None:
-    """A number in a disc."""
-    axes.annotate(number, at, ha="center", va="center", fontsize=6.5, color="white", zorder=6,
-                  bbox={"boxstyle": "circle,pad=0.2", "fc": shade, "ec": "none"})  # fmt: skip
+def label(
+    axes: Any, at: Any, text: str, off: tuple[float, float], shade: str, weight: str = "bold"
+) -> None:
+    """A number or a letter beside a place."""
+    axes.annotate(text, at, xytext=off, textcoords="offset points", ha="center", va="center",
+                  fontsize=8, color=shade, fontweight=weight, zorder=6)  # fmt: skip
 
 
 def starts(axes: Any, shown: list[Shown]) -> None:
