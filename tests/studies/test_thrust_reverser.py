@@ -165,6 +165,23 @@ def test_claims_are_of_the_study(scenario):
         assert len(set(names)) == len(names)
 
 
+def test_the_documents_count_the_claims_there_are(scenario):
+    text = (SCENARIOS.parent / "docs/thrust_reverser.md").read_text(encoding="utf-8")
+    [counts] = re.findall(r"Of (\d+) claims in (\d+) readings (\d+) are confirmed, "
+                          r"(\d+) contradicted, (\d+) undetermined", text)  # fmt: skip
+    claims, readings, *verdicts = map(int, counts)
+    assert (claims, readings) == (len(CLAIMS), sum(len(claim.readings) for claim in CLAIMS))
+    assert sum(verdicts) == readings
+    lines = re.findall(r"^\| (.+) \| (\d+) \| (\d+) \| (\d+) \|$", text, re.MULTILINE)
+    named = {text or "independent of our choices": worth for worth, text in WORTH.items()}
+    told = {named[name]: sum(map(int, found)) for name, *found in lines if name in named}
+    each = [worth for of in worths().values() for worth in of.values()]
+    assert told == {worth: each.count(worth) for worth in WORTH}
+    [runs] = re.findall(r": (\d+) runs\)", text)
+    alone = [case for case in scenario["cases"].values() if case.get("sweep", "") is None]
+    assert int(runs) == 8 * (len(scenario["cases"]) - len(alone) - 1) + len(alone) + 30
+
+
 def worths():
     """What agreement with each reading of a claim is worth, by its key."""
     return {c.key: {r.name: r.worth or c.worth for r in c.readings} for c in CLAIMS}

@@ -37,7 +37,7 @@ PEAKS = (
     "The largest forces of the actuators over 418, 419, 421 and 422 mm/s of one of them. The "
     "stiffness of the actuators, their angles and radius, the stiffnesses of the rails in both "
     "directions and the asymmetry of the loads were fitted to these nine numbers, so that "
-    "agreement proves little; what stands apart from them are the orderings above."
+    "agreement proves little; nor do the orderings above, which share their data with this fit."
 )
 
 STICKING = (
