@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from trsim.errors import ModelError, ScenarioError, TrsimError
-from trsim.scenario.load import loads
+from trsim.scenario.load import load, loads
 from trsim.solve.start.consistent import start
 from trsim.sweep.plan import plan
 
-from ..linkages import flat_parallelogram, four_bar, slider_crank
+from ..linkages import REVERSER, flat_parallelogram, four_bar, slider_crank
 from ..runs import assemble, built, run
 
 SENSED = "\nsensors: {a: {joint: A}, b: {joint: B}, c: {joint: C}}"
@@ -206,6 +206,14 @@ def test_what_another_body_does_hides_no_contradiction():
     drive = "drives: {motor: {joint: A, velocity: 1}}\n"
     text = four_bar("true", drive + "initial: {A.rate: 1.01}").replace("joints:", f"  {fast}")
     assert "1.01 rad/s contradicts joints and drives" in refused(text).what
+
+
+def test_a_rate_of_zero_contradicts_no_rounding():
+    """The door of the reverser, at rest against the fairing, which its drive moves: some 1e-16."""
+    sets = ["initial.equilibrium=[]", "initial.B.rate=0", "solver.end=1 ms"]
+    r = run(load(REVERSER / "ideal.yaml", sets))
+    assert r["door_angle.rate"][0] == pytest.approx(0.0, abs=1e-12)
+    assert r["stroke.rate"][0] == pytest.approx(0.5, rel=1e-12)
 
 
 def test_a_dead_centre_has_no_rate_of_its_slider():

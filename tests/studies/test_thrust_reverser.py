@@ -18,16 +18,31 @@ from trsim.analyse.fluctuation import fluctuation
 from trsim.analyse.outputs import scalar
 from trsim.cli import main
 from trsim.errors import FileError, UsageError
+from trsim.report.display import Shown
 from trsim.report.page import Cell, Line, Points, Section, Table, Text, page
+from trsim.report.style import look, panels
 from trsim.store.read import read
-from trsim.studies.claim import LAW, WORTH
-from trsim.studies.judge import OF_LAWS, shown
+from trsim.studies.claim import (
+    BOOKKEEPING,
+    CHOSEN,
+    GEOMETRY,
+    INDEPENDENT,
+    LAW,
+    TUNED,
+    WORTH,
+    Claim,
+    Reading,
+)
+from trsim.studies.drawing import UNITS, enlarged
+from trsim.studies.judge import OF_LAWS, Row, shown
 from trsim.studies.numbers import number, word
 from trsim.studies.rules import (
     CONFIRMED,
     CONTRADICTED,
     UNDETERMINED,
+    Judged,
     alike,
+    departing,
     exact,
     falling,
     interval,
@@ -39,9 +54,10 @@ from trsim.studies.rules import (
 )
 from trsim.studies.runs import Member, Runs
 from trsim.studies.study import paper
+from trsim.studies.tables import tally
 from trsim.studies.thrust_reverser import STUDY
 from trsim.studies.thrust_reverser.claims import CLAIMS
-from trsim.studies.thrust_reverser.figures import FIGURES
+from trsim.studies.thrust_reverser.figures import FIGURES, chain
 from trsim.sweep.go import go
 from trsim.sweep.plan import plan
 
@@ -81,6 +97,12 @@ def cases(*means, spread=MEMBERS):
         (steadier(), cases(1.0, 2.0, 1.0, 1.1), CONFIRMED),
         (steadier(), cases(1.0, 1.1, 1.0, 2.0), CONTRADICTED),
         (steadier(), cases(1.0, 1.1, 1.0, 1.1), UNDETERMINED),
+        (departing(), cases(1.0, 1.1, 1.0, 2.0), CONFIRMED),
+        (departing(), cases(1.0, 1.1, 2.0, 1.0), CONFIRMED),  # the other way, and farther
+        (departing(), cases(1.0, 2.0, 1.0, 1.1), CONTRADICTED),
+        (departing(), cases(2.0, 1.0, 1.1, 1.0), CONTRADICTED),
+        (departing(), cases(1.0, 1.1, 1.0, 1.12), UNDETERMINED),
+        (departing(), cases(1.0, 0.0, 1.0, 2.0), UNDETERMINED),
         (exact(0.9, 1.1, "x"), np.array([[1.0]]), CONFIRMED),
         (exact(0.9, 1.1, "x"), np.array([[2.0]]), CONTRADICTED),
         (undecided("no"), cases(1.0), UNDETERMINED),
@@ -92,7 +114,15 @@ def test_verdicts(rule, values, verdict):
     assert found.told and rule.words
 
 
-@pytest.mark.parametrize("rule", [rising(), falling(), ratio(1.0, 3.0), steadier(), alike(0.1)])
+def test_scatter_is_no_effect():
+    """Two cases that scatter far, but alike in the mean, are no farther apart for it."""
+    calm, wild = cases(1.0, 1.05), np.array([[1.0, 1.0, 1.0, 1.0], [2.0, 0.5, 2.0, 0.5]])
+    assert departing().judge(np.concatenate([calm, wild])).verdict == UNDETERMINED
+
+
+@pytest.mark.parametrize(
+    "rule", [rising(), falling(), ratio(1.0, 3.0), steadier(), departing(), alike(0.1)]
+)
 def test_one_run_proves_nothing(rule):
     assert rule.judge(cases(1.0, 2.0, 1.5, 1.6)[:, :1]).verdict == UNDETERMINED
 
@@ -130,12 +160,72 @@ def test_claims_are_of_the_study(scenario):
     assert len(set(keys)) == len(keys)
     for claim in CLAIMS:
         assert claim.section in STUDY.sections and claim.worth in WORTH
+        assert {reading.worth for reading in claim.readings} <= {"", *WORTH}
         names = [reading.name for reading in claim.readings]
         assert len(set(names)) == len(names)
 
 
+def test_the_documents_count_the_claims_there_are(scenario):
+    text = (SCENARIOS.parent / "docs/thrust_reverser.md").read_text(encoding="utf-8")
+    [counts] = re.findall(r"Of (\d+) claims in (\d+) readings (\d+) are confirmed, "
+                          r"(\d+) contradicted, (\d+) undetermined", text)  # fmt: skip
+    claims, readings, *verdicts = map(int, counts)
+    assert (claims, readings) == (len(CLAIMS), sum(len(claim.readings) for claim in CLAIMS))
+    assert sum(verdicts) == readings
+    lines = re.findall(r"^\| (.+) \| (\d+) \| (\d+) \| (\d+) \|$", text, re.MULTILINE)
+    named = {text or "independent of our choices": worth for worth, text in WORTH.items()}
+    told = {named[name]: sum(map(int, found)) for name, *found in lines if name in named}
+    each = [worth for of in worths().values() for worth in of.values()]
+    assert told == {worth: each.count(worth) for worth in WORTH}
+    [runs] = re.findall(r": (\d+) runs\)", text)
+    alone = [case for case in scenario["cases"].values() if case.get("sweep", "") is None]
+    assert int(runs) == 8 * (len(scenario["cases"]) - len(alone) - 1) + len(alone) + 30
+
+
+def worths():
+    """What agreement with each reading of a claim is worth, by its key."""
+    return {c.key: {r.name: r.worth or c.worth for r in c.readings} for c in CLAIMS}
+
+
+def test_what_shares_its_data_with_the_fit_is_no_finding():
+    """The nine peaks were fitted: the same forces give trends, orderings and advice."""
+    of = worths()
+    for key in ("one_rises", "one_falls", "two_rises", "two_falls", "two_opposite",
+                "one_alike_each", "one_above_each", "two_alike_each", "advice", "advice_faster",
+                "sticks_earlier"):  # fmt: skip
+        assert {*of[key].values()} == {TUNED}, key
+    assert of["speed_triple"] == {"B": CHOSEN, "A and B": CHOSEN, "at A": INDEPENDENT}
+
+
+def test_geometry_and_bookkeeping_are_told_apart():
+    of = worths()
+    assert of["phase_range"]["eccentricity at B"] == GEOMETRY
+    assert of["phase_range"]["velocity at B"] == INDEPENDENT
+    assert {*of["displacement"].values()} == {GEOMETRY}
+    assert {*of["coulomb"].values()} == {BOOKKEEPING}
+
+
+def test_every_worth_has_a_line_of_its_own_in_the_tally():
+    claims = [
+        Claim("a", "1", "", "a", rising(), (Reading("", ()), Reading("g", (), worth=GEOMETRY))),
+        Claim("b", "1", "", "b", rising(), (Reading("", ()),), TUNED),
+        Claim("c", "1", "", "c", rising(), (Reading("", ()),), BOOKKEEPING),
+    ]
+    verdicts = iter([CONFIRMED, CONTRADICTED, CONFIRMED, UNDETERMINED])
+    rows = [Row(claim, reading, Judged(next(verdicts), "", 1, 1), (), ())
+            for claim in claims for reading in claim.readings]  # fmt: skip
+    found = {line.cells[0].text: [cell.text for cell in line.cells[1:]]
+             for line in tally(rows).lines}  # fmt: skip
+    assert found == {
+        "independent of our choices": ["1", "0", "0"],
+        "by construction": ["1", "0", "0"],
+        "geometry": ["0", "1", "0"],
+        "bookkeeping": ["0", "0", "1"],
+    }
+
+
 def test_every_figure_of_the_study_is_drawn(scenario):
-    panels = {"3": "ab", "7": "ab", "8": "", "9": "abcdef", "10": "abcd", "11": "abcd",
+    panels = {"1": "", "3": "ab", "7": "ab", "8": "", "9": "abcdef", "10": "abcd", "11": "abcd",
               "12": "abcd", "13": "ab", "14": "abcdefgh", "15": "ab", "16": "abcd", "17": "ab",
               "18": "abcde", "19": "ab", "20": "ab", "21": "", "22": "", "23": "abc",
               "24": "abc", "25": "abc", "26": "abc"}  # fmt: skip
@@ -158,12 +248,13 @@ def test_the_members_of_the_study(scenario):
     assert members[0] == (1, "0 mm", "1e-6*loose")
 
 
-CHAINS = {"ideal": "ideal", "a_03": "clearance_a_0.3mm", "b_03": "clearance_b_0.3mm"}
+CHAINS = {"ideal": "ideal", "a_03": "clearance_a_0.3mm", "b_03": "clearance_b_0.3mm",
+          "a_03_fine": "clearance_a_0.3mm", "b_03_fine": "clearance_b_0.3mm"}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A study of three cases of two members, a third of a stroke."""
+    """A study of three cases of two members, a third of a stroke; two of them for figures."""
     place = tmp_path_factory.mktemp("study") / "scenarios"
     place.mkdir()
     for path in (SCENARIOS / "thrust_reverser").glob("*.yaml"):
@@ -261,9 +352,61 @@ def test_the_page_stands_alone(page_folder):
         assert f'id="claim-{claim.key}"' in text
 
 
+def test_panels_have_the_letters_of_the_study(folder):
+    runs = Runs(folder)
+    with look():
+        for one in FIGURES:
+            if one.panels and one.names and runs.has(*one.names):
+                titles = [axes.get_title("left") for axes in one.made(runs).axes]
+                letters = [title[1] for title in titles if title.startswith("(")]
+                assert "".join(letters) == one.panels, one.number
+
+
+def test_what_is_enlarged_fills_its_panel():
+    with look():
+        axes = panels(1)[1]
+    t = np.linspace(0.0, 1.0, 1001)
+    axes[0, 0].plot(t, 100.0 * t)
+    axes[0, 0].plot(t, np.where(np.abs(t - 0.35) < 1e-3, -7.0, 0.0))
+    enlarged(axes[0, 0], 0.3, 0.4)
+    assert axes[0, 0].get_xlim() == (0.3, 0.4)
+    low, high = axes[0, 0].get_ylim()
+    assert (low, high) == pytest.approx((-7.0 - 2.35, 40.0 + 2.35))
+
+
+def test_what_is_enlarged_is_the_member_as_stated(scenario):
+    """A case with fine rows has its motion from the case it is named after."""
+    for name, case in scenario["cases"].items():
+        if name.endswith("_fine"):
+            assert case["extends"] == name.removesuffix("_fine")
+            assert set(case) <= {"extends", "sweep", "output", "solver"} and case["sweep"] is None
+            tolerance = case.get("solver", {}).get("tolerance", "1e-6*loose")
+            assert tolerance == scenario["sweep"]["solver.tolerance"][0]
+            assert ("solver" in case) == ("flexible" in name)
+
+
 def test_figures_are_drawn(page_folder):
     for path in page_folder.glob("*.png"):
         assert 0.005 < drawn(path) < 0.5, path.name
+
+
+def test_the_chain_is_drawn_where_the_run_has_it(folder, tmp_path):
+    """At its start as its scenario draws it; B moves aft with the fairing, 0.5 m/s."""
+    shown = Shown(Runs(folder).stated("ideal").run, "", UNITS)
+    with look():
+        figure = chain.figure_1([shown] * 9)
+        figure.savefig(tmp_path / "a.png")
+    begun, touched, _ = figure.axes[:3]
+    joints = [[tuple(line.get_xydata()[0]) for line in axes.lines if line.get_marker() == "o"]
+              for axes in (begun, touched)]  # fmt: skip
+    a, p, q, b = joints[0]
+    assert np.hypot(*np.subtract(p, a)) == pytest.approx(0.220, abs=1e-5)
+    assert np.hypot(*np.subtract(q, b)) == pytest.approx(0.195, abs=1e-4)
+    assert b == pytest.approx((-0.242, 0.241), abs=1e-5)
+    assert joints[1][0] == pytest.approx(a, abs=1e-5)
+    assert joints[1][3] == pytest.approx((-0.092, 0.241), abs=1e-3)
+    assert len(figure.axes) == 7
+    assert 0.02 < drawn(tmp_path / "a.png") < 0.5
 
 
 def test_the_same_every_time(page_folder, folder, tmp_path):
@@ -329,6 +472,29 @@ def test_numbers_of_a_run(member):
     assert number(member, f"place:stroke{whole}").value == pytest.approx(x.max())
     assert number(member, "orbit:B").value > 0.0
     assert 0.0 < number(member, "flight:B").value < 1.0
+
+
+def test_the_free_motions_of_a_run(folder):
+    """The door of the ideal chain moves by the drive or against spring and lug: 12 unknowns, 11
+    rows; a pin with play holds none of its two."""
+    runs = Runs(folder)
+    assert number(runs.stated("ideal"), "mechanism:mobility") == (1.0, "-")
+    assert number(runs.stated("b_03"), "mechanism:mobility") == (3.0, "-")
+    with pytest.raises(UsageError):
+        number(runs.stated("ideal"), "mechanism:mobilty")
+
+
+def test_what_was_not_judged_before(scenario):
+    """Two freedoms and what makes one motion of them, Coulomb, rod and load, joints and load."""
+    of = {claim.key: claim for claim in CLAIMS}
+    for key in ("two_freedoms", "unique", "unique_needs", "coulomb_converges", "rod_load",
+                "rod_force_fluctuation", "number_acceleration", "load_force"):  # fmt: skip
+        assert of[key].readings, key
+    words = {s.word for r in of["load_force"].readings for s in r.series}
+    assert all(word.startswith("fluctuation:") and "contact_force" in word for word in words)
+    origins = {case: STUDY.origin(case) for case in scenario["cases"] if "kicked" in case}
+    assert origins == {"kicked": "ideal", "no_spring_kicked": "no_spring",
+                       "no_lug_kicked": "no_lug", "neither_kicked": "neither"}  # fmt: skip
 
 
 def test_windows_are_of_stroke(member):

@@ -14,6 +14,7 @@ from tests.report.test_figures import drawn
 from tests.sweep.test_go import here
 from trsim.assemble.assemble import assemble
 from trsim.errors import UsageError
+from trsim.report.animation.motion import motion
 from trsim.report.style import look
 from trsim.scenario.load import load
 from trsim.solve.simulate import simulate
@@ -27,9 +28,11 @@ from trsim.studies.single import (
     apart,
     below,
     greatest,
+    multiple,
     near,
     opposite,
     steps,
+    unlike,
 )
 from trsim.studies.study import paper
 from trsim.studies.thrust_reverser import STUDY
@@ -141,6 +144,8 @@ def column(*values):
         (near(0.05), (1.0, 1.04), (1.0, 1.06)),
         (apart(), (10, 5, 9), (10, 5, 7)),
         (opposite(), (1, 2, 2, 1), (1, 2, 3, 4)),
+        (multiple(10.0), (3, 31), (3, 29)),
+        (unlike(0.01), (1.0, 1.0, 1.02), (1.0, 1.005, 1.0)),
         (greatest(above(), 2), (1, 2, 3, 0), (1, 3, 2, 3)),
     ],
 )
@@ -231,6 +236,22 @@ def test_the_page_has_them(made):
         assert 0.005 < drawn(path) < 0.8, path.name
 
 
+def test_all_directions_have_one_sign(runs):
+    """The force of the fairing on the actuator; its X is what `force` tells, hold-back positive."""
+    [one] = [one for one in FIGURES if one.number == "23"]
+    member = runs.stated("spatial_420")
+    with look():
+        axes = one.made(runs).axes
+    for k, line in enumerate(axes[0].get_lines(), 1):
+        found = member.channel(f"actuator_{k}.force")
+        assert line.get_ydata() == pytest.approx(found, abs=1e-3 * np.abs(found).max())
+    for a, column in zip(axes, range(3), strict=True):
+        for k, line in enumerate(a.get_lines(), 1):
+            assert line.get_ydata() == pytest.approx(
+                -member.channel(f"actuator_{k}.reaction")[:, column]
+            )
+
+
 # --- the picture -----------------------------------------------------------------------------
 
 
@@ -256,6 +277,14 @@ def test_the_mechanism_is_drawn(tmp_path):
     write(tmp_path / "a.h5", scenario, built, simulate(scenario, built))
     with look():
         figure = mechanism.figure_22([SimpleNamespace(run=read(tmp_path / "a.h5"))])
+    shafts = [mesh.points for mesh, colour in mechanism.parts(motion(read(tmp_path / "a.h5")), 0)
+              if colour == mechanism.SHAFT]  # fmt: skip
+    lowest, highest = np.vstack(shafts).min(axis=0), np.vstack(shafts).max(axis=0)
+    ends = np.array([point for n in (1, 2, 3)
+                     for point in scenario.drives[f"actuator_{n}"].points[:1]])  # fmt: skip
+    assert (lowest <= ends.min(axis=0)).all() and (highest >= ends.max(axis=0)).all()
+    assert lowest == pytest.approx(ends.min(axis=0), abs=0.05)
+    assert highest == pytest.approx(ends.max(axis=0), abs=0.05)
     written = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert written == ["1", "2", "3", "1", "2", "3", "4", "5"] * 2
     figure.savefig(tmp_path / "a.png")

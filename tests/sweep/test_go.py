@@ -17,6 +17,7 @@ from tests import small
 from tests.sizes import size
 from trsim.analyse.cases import unfinished
 from trsim.errors import FileError, UsageError
+from trsim.store.checkpoint import sources
 from trsim.store.lock import writing
 from trsim.store.read import verify
 from trsim.sweep import job, local
@@ -383,6 +384,18 @@ def test_interrupted(scenario, tmp_path):
     assert not alive(workers)
     assert 2 <= len(entries(folder)) < 40
     assert (folder / "index.csv").read_text().count(",done,") >= 2
+
+
+def test_pages_have_no_part_in_a_run(tmp_path):
+    """What only reads results changes none: a page may be improved without running all again."""
+    for folder in ("solve", "studies"):
+        (tmp_path / folder).mkdir()
+    page, method = tmp_path / "studies" / "page.py", tmp_path / "solve" / "method.py"
+    found = []
+    for path in (page, page, method, method):
+        path.write_text(f"a = {len(found)}\n")
+        found.append(sources(tmp_path))
+    assert found[0] == found[1] != found[2] != found[3]
 
 
 def test_an_engine():

@@ -11,7 +11,15 @@ Cases = tuple[tuple[str, str], ...]  # (label, case) of what is compared
 INDEPENDENT = "independent"
 TUNED = "tuned"  # our data were made to agree: it proves nothing
 CHOSEN = "chosen"  # of several choices the one that agrees was taken: a selection
-WORTH = {INDEPENDENT: "", TUNED: "by construction", CHOSEN: "by selection"}
+GEOMETRY = "geometry"  # lengths and clearances leave nothing else, however it moves: no finding
+BOOKKEEPING = "bookkeeping"  # nor do a formula, a count or a balance, which no run could miss
+WORTH = {
+    INDEPENDENT: "",
+    TUNED: "by construction",
+    CHOSEN: "by selection",
+    GEOMETRY: "geometry",
+    BOOKKEEPING: "bookkeeping",
+}
 
 LAW = "law"  # instead of a case: a number of trsim.laws, see `law` of a study
 
@@ -30,6 +38,9 @@ class Reading(NamedTuple):
     name: str
     series: tuple[Series, ...]
     note: str = ""  # what is assumed in this reading
+    worth: str = (
+        ""  # of agreement with it, where that is not what agreement with the claim is worth
+    )
 
 
 class Claim(NamedTuple):

@@ -69,6 +69,16 @@ def with_legend(figure: Any, axes: Any, runs: Sequence[Shown], most: int = 3) ->
     return figure
 
 
+def enlarged(axes: Any, begin: float, end: float) -> None:
+    """A stretch of the curves, with the room in height that they take there."""
+    inside = [y[(x >= begin) & (x <= end)] for x, y in
+              (np.array(line.get_data(), dtype=float) for line in axes.get_lines())]  # fmt: skip
+    found = np.concatenate([y for y in inside if y.size])
+    room = 0.05 * (np.ptp(found) or 1.0)
+    axes.set_xlim(begin, end)
+    axes.set_ylim(found.min() - room, found.max() + room)
+
+
 def alike(rows: Sequence[Sequence[Any]], x: bool = True) -> None:
     """One scale along each row of panels."""
     for row in rows:

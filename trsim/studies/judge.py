@@ -38,6 +38,11 @@ class Row(NamedTuple):
     sources: tuple[Source, ...]
 
     @property
+    def worth(self) -> str:
+        """What agreement is worth."""
+        return self.reading.worth or self.claim.worth
+
+    @property
     def files(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(source.file for source in self.sources))
 

@@ -140,6 +140,14 @@ def left(member: Member, asked: Word) -> Number:
     return Number(float(passes[int(asked.of)]), "-")
 
 
+def mechanism(member: Member, asked: Word) -> Number:
+    """A count of the mechanism, as `trsim check` tells it."""
+    counts = {"mobility": member.run.group("mechanism")["mobility"]}
+    if asked.of not in counts:
+        raise UsageError(f"no '{asked.of}' of a mechanism", known(asked.of, tuple(counts)))
+    return Number(float(counts[asked.of]), "-")
+
+
 def status(member: Member, asked: Word) -> Number:
     """1 where the run ended so, else 0."""
     return Number(float(member.run.attributes["status"] == asked.of), "-")
@@ -207,5 +215,6 @@ KINDS: dict[str, Callable[..., Number] | None] = {
     "begins": begins,
     "turns": turns,
     "status": status,
+    "mechanism": mechanism,
     "left": left,
 }

@@ -183,6 +183,25 @@ def steadier() -> Rule:
     return of_positive("largest over smallest: less in the second group than in the first", judge)
 
 
+def sizes(of: Interval) -> tuple[float, float]:
+    """The smallest and the largest magnitude in an interval."""
+    low, high = sorted((abs(of.low), abs(of.high)))
+    return (0.0 if of.low < 0.0 < of.high else low), high
+
+
+def departing() -> Rule:
+    """The second two of four cases are farther apart, as a ratio, than the first two."""
+
+    def judge(values: Array) -> Judged:
+        steps = np.log(values[1::2] / values[::2])
+        first, second = (sizes(interval(step)) for step in steps)
+        surely, surely_not = second[0] > first[1] + SEEN, second[1] < first[0] + SEEN
+        holds = np.abs(steps[1]) > np.abs(steps[0]) + SEEN
+        return counted(verdict(surely, surely_not), _ratios(steps).replace("then", "and"), holds)
+
+    return of_positive("the second pair farther apart than the first, as mean ratios", judge)
+
+
 def undecided(reason: str) -> Rule:
     """Nothing that could be measured decides it."""
     return Rule("nothing measured decides", lambda _: Judged(UNDETERMINED, reason, 0, 0))

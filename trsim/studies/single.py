@@ -69,6 +69,27 @@ def near(share: float) -> Rule:
     return Rule(f"largest and smallest within {100.0 * share:g} %", judge)
 
 
+def unlike(share: float) -> Rule:
+    """The largest case is above the smallest one by more than a share."""
+    other = near(share)
+
+    def judge(values: Array) -> Judged:
+        found = other.judge(values)
+        return judged(found.verdict == CONTRADICTED, found.told)
+
+    return Rule(f"largest and smallest more than {100.0 * share:g} % apart", judge)
+
+
+def multiple(least: float) -> Rule:
+    """The second case is at least so many times the first."""
+
+    def judge(values: Array) -> Judged:
+        found = float(values[1, 0] / values[0, 0])
+        return judged(found >= least, f"ratio {found:.4g}")
+
+    return Rule(f"the second at least {least:g} times the first", judge)
+
+
 def apart() -> Rule:
     """The first and the last of three cases are nearer to each other than to the second."""
 

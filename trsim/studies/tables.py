@@ -6,7 +6,7 @@ from pathlib import Path
 from trsim.report.asked import table
 from trsim.report.page import Cell, Ensembles, Line, Table
 from trsim.store.target import headed
-from trsim.studies.claim import INDEPENDENT, WORTH
+from trsim.studies.claim import BOOKKEEPING, GEOMETRY, INDEPENDENT, WORTH
 from trsim.studies.drawing import Drawn
 from trsim.studies.judge import Row, Source
 from trsim.studies.rules import CONFIRMED
@@ -21,7 +21,7 @@ def write(rows: Sequence[Row], folder: Path) -> list[Path]:
     claims = [
         (
             *(row.claim.key, row.claim.section, row.claim.figure, row.claim.statement),
-            *(row.reading.name, row.judged.verdict, row.claim.worth, row.claim.rule.words),
+            *(row.reading.name, row.judged.verdict, row.worth, row.claim.rule.words),
             *("; ".join(row.numbers), row.judged.told, row.judged.holds, row.judged.of),
             *(assumptions(row), " ".join(row.files)),
         )
@@ -45,7 +45,8 @@ def shown(rows: Sequence[Row], figures: Sequence[Drawn]) -> Table:
     for row in rows:
         claim, first = row.claim, row.claim.key != last
         last = claim.key
-        worth = WORTH[claim.worth] if row.judged.verdict == CONFIRMED else ""
+        marked = row.judged.verdict == CONFIRMED or row.worth in (GEOMETRY, BOOKKEEPING)
+        worth = WORTH[row.worth] if marked else ""
         head = Cell(claim.statement, aside=claim.note) if first else Cell("")
         if first and (anchor := figure(claim.figure, figures)):
             note = f"{claim.note}. " if claim.note else ""
@@ -91,8 +92,11 @@ def figure(text: str, figures: Sequence[Drawn]) -> str:
 def tally(rows: Sequence[Row]) -> Table:
     """How many readings have which verdict, those apart whose agreement proves nothing."""
     lines = []
+    there = {row.worth for row in rows}
     for worth, text in (WORTH | {INDEPENDENT: "independent of our choices"}).items():
-        mine = [row.judged.verdict for row in rows if row.claim.worth == worth]
+        if worth not in there:
+            continue
+        mine = [row.judged.verdict for row in rows if row.worth == worth]
         found = [str(mine.count(v)) for v in ("confirmed", "contradicted", "undetermined")]
         lines.append(Line([Cell(text), *map(Cell, found)]))
     return Table(("agreement", "confirmed", "contradicted", "undetermined"), lines)

@@ -36,6 +36,7 @@ from trsim.solve.start.bars import as_rigid, moving_as_rigid
 Array = NDArray[np.float64]
 
 SAME = 1e-6  # of its size: how far a rate may be from what the others make it
+ROUNDING = 1e-12  # of the velocities of all bodies: what is none in a rate
 INDEPENDENT = 1e-8  # of its own size: what must be left of a wish that is not fixed already
 
 
@@ -143,7 +144,8 @@ def check_rates(
     for (name, value), gradient in zip(rates.items(), gradients, strict=True):
         found, size = float(np.sum(gradient * v)), float(np.sum(np.abs(gradient * v)))
         alone = not independent(J, [gradient])
-        if abs(found - value) > SAME * max(size, abs(value)):
+        none = ROUNDING * length(gradient) * length(v)
+        if abs(found - value) > SAME * max(size, abs(value)) + none:
             unit = {"angle": "rad/s", "stroke": "m/s"}[mechanism.coordinates[name].kind]
             others = "" if alone else "".join(f"{other}.rate, " for other in before)
             hint = "give no more rates than there are free motions, or those that fit together"

@@ -6,6 +6,7 @@ from trsim.studies.thrust_reverser.claims import CLAIMS
 from trsim.studies.thrust_reverser.figures import FIGURES, laws
 
 SECTIONS = {
+    "2": "Section 2: the mechanism",
     "3.1": "Section 3: contact and friction laws",
     "3.2": "Section 3: contact and friction laws",
     "6.2": "Section 6.2: verification",
@@ -28,7 +29,10 @@ STUDY = Study(
     figures=FIGURES,
     moving=Moving("ab_03", 30.0),
     grids=("spatial_jam",),
-    references={"pendulum_8": "pendulum_16"},  # which is no chain
+    references={
+        "pendulum_8": "pendulum_16",  # which is no chain
+        **{f"{less}_kicked": less for less in ("no_spring", "no_lug", "neither")},
+    },
     reference="ideal",
     law=laws.number,
     write=peaks.write,

@@ -12,6 +12,11 @@ def clearances(name: str) -> Cases:
     return tuple((f"0.{tenths} mm", name.format(tenths)) for tenths in (1, 3, 5))
 
 
+def fine(cases: Cases) -> Cases:
+    """The same members with rows ten times as fine, for what is seen enlarged."""
+    return tuple((label, f"{name}_fine") for label, name in cases)
+
+
 AB, A, B = clearances("ab_0{}"), clearances("a_0{}"), clearances("b_0{}")
 SOFT, GIVES = clearances("ab_0{}_soft"), clearances("ab_0{}_compliant")
 SPEED_B = (("0.5 m/s", "b_05"), ("1.0 m/s", "b_05_fast"))

@@ -23,7 +23,10 @@ VERDICTS = (
     "undetermined: neither, or nothing that could be measured decides it.",
     "holds in: of how many members the claim is true, which is the chance of a single run to "
     "show it.",
-    "by construction: our data were tuned to agree, so that agreement proves nothing.",
+    "by construction: our data were tuned to agree, so that agreement proves nothing; so are "
+    "trends and orderings that share their data with such a fit.",
+    "geometry, bookkeeping: lengths and clearances, or a formula, a count or a balance of the "
+    "load, decide it whatever the motion is. They are counted apart from what was found.",
     "Cases with five doors and three actuators are smooth and have one run each: a difference is "
     "there or it is not.",
     "by selection: B was chosen among four pins as the one whose clearance has most effect, "
@@ -34,7 +37,7 @@ PEAKS = (
     "The largest forces of the actuators over 418, 419, 421 and 422 mm/s of one of them. The "
     "stiffness of the actuators, their angles and radius, the stiffnesses of the rails in both "
     "directions and the asymmetry of the loads were fitted to these nine numbers, so that "
-    "agreement proves little; what stands apart from them are the orderings above."
+    "agreement proves little; nor do the orderings above, which share their data with this fit."
 )
 
 STICKING = (

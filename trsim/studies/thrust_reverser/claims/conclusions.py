@@ -24,6 +24,14 @@ CLAIMS = (
         note="0.3 mm at each",
     ),
     Claim(
+        "number_acceleration", "8", "",
+        "The door's acceleration grows with the number of joints with clearance.",
+        rising(),
+        (*of("fluctuation", readings(f"fluctuation:door_angle.acceleration{OVERTURN}")),
+         *of("largest value", readings("peak:door_angle.acceleration"))),
+        note="our reading of vibration; 0.3 mm at each",
+    ),
+    Claim(
         "number_force", "8", "",
         "Contact forces grow with the number of joints with clearance.",
         rising(),

@@ -2,6 +2,7 @@
 
 from trsim.studies.drawing import Drawn
 from trsim.studies.thrust_reverser.figures import (
+    chain,
     clearance,
     laws,
     mechanism,
@@ -13,5 +14,5 @@ from trsim.studies.thrust_reverser.figures import (
     sticking,
 )
 
-IN_ORDER = (laws, pendulum, clearance, place, speed, rod, mechanism, spatial, sticking)
+IN_ORDER = (chain, laws, pendulum, clearance, place, speed, rod, mechanism, spatial, sticking)
 FIGURES: tuple[Drawn, ...] = tuple(drawn for module in IN_ORDER for drawn in module.FIGURES)

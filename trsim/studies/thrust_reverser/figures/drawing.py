@@ -9,8 +9,8 @@ from trsim.arrays import Array
 from trsim.report.display import Shown
 from trsim.report.figures import contact_history
 from trsim.report.orbits import circle, coloured, path, square
-from trsim.report.style import colour, panels, thinned
-from trsim.studies.drawing import fluctuates, lettered, overlaid, with_legend
+from trsim.report.style import colour, panels
+from trsim.studies.drawing import enlarged, fluctuates, lettered, overlaid, with_legend
 
 ACCELERATION, VELOCITY = "angular acceleration", "angular velocity"
 DOOR = ("door_angle", "door_angle.rate", "door_angle.acceleration")
@@ -19,7 +19,8 @@ QUANTITIES = {
     "actuator.force": "driving force",
     "air.magnitude": "load",
 }
-MOST = 100_000  # points of a path
+ONSET = 0.298, 0.338  # s: the touch of the lug at 0.300 s and what follows, at 0.5 m/s
+MOST = 400_000  # points of a path
 ROOM = 1.15  # half width of a panel over the radius of the circle in it
 KILO = {"deg/s\u00b2": (1e-3, "10\u00b3 deg/s\u00b2")}  # of numbers too long for an axis
 
@@ -40,6 +41,19 @@ def over_time(runs: Sequence[Shown], of: Sequence[str], **options: Any) -> tuple
     return with_legend(figure, axes[0, 0], runs), axes
 
 
+def with_onset(runs: Sequence[Shown], of: Sequence[str], onset: tuple[float, float]) -> Any:
+    """A figure with a line of panels for each channel or contact: the stroke, and its onset, s."""
+    figure, axes = panels(len(of), 2, height=1.65, width=7.2, width_ratios=(1.0, 1.25))
+    for row, what, letter in zip(axes, of, "abcdef", strict=False):
+        panel(row[0], runs, what, letter)
+        panel(row[1], runs, what, "", f"enlarged, {1e3 * onset[0]:g} to {1e3 * onset[1]:g} ms")
+        enlarged(row[1], *onset)
+        row[1].set_ylabel("")
+    timed(axes[-1])
+    figure.align_ylabels()
+    return with_legend(figure, axes[0, 0], runs)
+
+
 def panel(axes: Any, runs: Sequence[Shown], of: str, letter: str, text: str = "") -> None:
     """A channel over time, or the contact force at a joint."""
     draw = curves if of in QUANTITIES else forces
@@ -49,7 +63,7 @@ def panel(axes: Any, runs: Sequence[Shown], of: str, letter: str, text: str = ""
 def curves(axes: Any, runs: Sequence[Shown], channel: str, letter: str, text: str = "") -> None:
     """One channel of all runs over time."""
     found = [values(shown, channel) for shown in runs]
-    paths = [thinned(shown.time, x) for shown, (x, _) in zip(runs, found, strict=True)]
+    paths = [(shown.time, x) for shown, (x, _) in zip(runs, found, strict=True)]
     overlaid(axes, runs, paths, [fluctuates(x) for x, _ in found], lw=0.7)
     quantity = QUANTITIES[channel]
     axes.set_ylabel(f"{quantity}\n({found[0][1]})")
@@ -60,7 +74,7 @@ def curves(axes: Any, runs: Sequence[Shown], channel: str, letter: str, text: st
 def forces(axes: Any, runs: Sequence[Shown], joint: str, letter: str, text: str = "") -> None:
     """The force in a contact at accepted steps, zero in flight."""
     found = [contact_history(shown, joint) for shown in runs]
-    overlaid(axes, runs, [thinned(*one) for one in found], [np.max(f) for _, f in found], lw=0.7)
+    overlaid(axes, runs, found, [np.max(f) for _, f in found], lw=0.7)
     axes.set_ylabel("contact force\n(N)")
     axes.margins(x=0.01)
     axes.set_ylim(bottom=0.0)

@@ -25,6 +25,7 @@ AROUND = np.radians(np.linspace(-90.0, 90.0, 49))
 THICK = {"large_rod": 0.018, "transfer": 0.016}  # m, radii drawn
 COWL, DOOR, ROD, LINK = "#9fb4c9", "#e07b28", "#2f7fc1", "#2a9d78"
 HOUSING, PISTON, RAIL, GROUND, NUMBER = "#b3202a", "#d9d9d9", "#6b7079", "#555a63", "#222222"
+SHAFT = "#7a3fa0"
 
 
 def figure_22(shown: list[Shown]) -> Any:
@@ -89,9 +90,9 @@ def parts(moved: Motion, k: int) -> Iterator[tuple[solids.Mesh, str]]:
     supports = [joints[f"chain_{n}_A"] for n in CHAINS]
     for one, other in pairwise(arc(supports)):
         yield solids.rod(one, other, 0.012), GROUND
+    yield from shaft(moved)
     for n in ACTUATORS:
-        drive = moved.drawn.scenario.drives[f"actuator_{n}"]
-        back, eye = (np.array(point) for point in drive.points)
+        back, eye = ends(moved, n)
         front = place(moved, k, "fairing", eye)
         yield solids.rod(back, back + (eye - back) * 0.9, 0.03), HOUSING
         yield solids.rod(back + (eye - back) * 0.9, front, 0.015), PISTON
@@ -103,6 +104,21 @@ def parts(moved: Motion, k: int) -> Iterator[tuple[solids.Mesh, str]]:
             if name.endswith("front"):
                 beam = np.array([0.05, force.at[1], 0.0])
                 yield solids.box(np.array([1.0, 0.03, 0.04]), np.eye(3)).moved(beam), RAIL
+
+
+def ends(moved: Motion, n: int) -> tuple[Array, Array]:
+    """Where an actuator is mounted, and its eye on the fairing, as drawn."""
+    back, eye = moved.drawn.scenario.drives[f"actuator_{n}"].points
+    return np.array(back), np.array(eye)
+
+
+def shaft(moved: Motion) -> Iterator[tuple[solids.Mesh, str]]:
+    """The soft shaft from gear to gear of the actuators, round behind the cascade."""
+    backs = [ends(moved, n)[0] for n in ACTUATORS]
+    for one, other in pairwise(arc(backs)):
+        yield solids.rod(one, other, 0.011), SHAFT
+    for back in backs:
+        yield solids.ball(0.042).moved(back), SHAFT
 
 
 def arc(points: list[Array]) -> Array:
@@ -117,7 +133,7 @@ def numbers(axes: Any, canvas: Canvas, moved: Motion) -> None:
     """The numbers of the actuators, and of the chains at their supports."""
     joints = {joint.name: joint.at for joint in moved.drawn.joints}
     for n in ACTUATORS:
-        back, eye = (np.array(p) for p in moved.drawn.scenario.drives[f"actuator_{n}"].points)
+        back, eye = ends(moved, n)
         canvas.number(axes, 0.85 * back + 0.15 * eye, f"{n}", HOUSING)
     for n in CHAINS:
         canvas.number(axes, joints[f"chain_{n}_A"] * (1.0, 0.82, 0.82), f"{n}", NUMBER)
@@ -125,7 +141,9 @@ def numbers(axes: Any, canvas: Canvas, moved: Motion) -> None:
 
 FIGURES = (
     Drawn("22", "", "The mechanism in space: fairing (grey, one sees through it) on rails at its "
-          "edges, pushed by actuators 1 to 3 (red), and five chains with their doors (orange), "
-          "large rods (blue) and transfer rods (green). Doors are drawn as the plates they are in "
-          "our data, 0.42 m wide, which meet as they turn.", (("", "spatial_420"),), figure_22),
+          "edges, pushed by actuators 1 to 3 (red), which a soft shaft (violet) joins, "
+          "and five chains with their doors (orange), large rods (blue) and transfer rods (green). "
+          "Doors are drawn as the plates they are in our data, 0.42 m wide, which meet as they "
+          "turn.",
+          (("", "spatial_420"),), figure_22),
 )  # fmt: skip

@@ -6,13 +6,14 @@ from trsim.report.display import Shown
 from trsim.report.orbits import square
 from trsim.report.style import panels
 from trsim.studies.drawing import Drawn
+from trsim.studies.thrust_reverser.cases import fine
 from trsim.studies.thrust_reverser.figures.drawing import (
     DOOR,
+    ONSET,
     ROOM,
-    forces,
     orbit,
-    over_time,
     section,
+    with_onset,
 )
 from trsim.studies.thrust_reverser.figures.place import door
 
@@ -21,27 +22,22 @@ HEAVY = (("rigid, 3.454 kg", "b_03_rigid_heavy"), ("flexible, 3.454 kg", "b_03_f
 UNDAMPED = ("flexible, 3.454 kg, undamped", "b_03_flexible_undamped")
 TABLES = (LIGHT[0], UNDAMPED)
 ALL = (*LIGHT, *HEAVY, UNDAMPED)
-ENLARGED = 0.295, 0.365  # s
 
 
 def figure_18(shown: list[Shown]) -> Any:
-    """The five panels of the study over time, and a part of one."""
-    figure, axes = over_time(shown, (*DOOR, "B", "actuator.force"))
-    forces(axes[2, 1], shown, "B", "", "(d) enlarged")
-    axes[2, 1].set_xlim(*ENLARGED)
-    return figure
+    """The five panels of the study over time; beside them the touch of the lug."""
+    return with_onset(shown, (*DOOR, "B", "actuator.force"), ONSET)
 
 
 def figure_19(shown: list[Shown]) -> Any:
-    """Orbits at B."""
-    figure, axes = panels(2, 3, height=2.7, width=7.2)
-    for a, one, letter in zip(axes.flat, shown, "abcde", strict=False):
+    """Orbits at B; (a) with the rigid rod, (b) with flexible ones."""
+    figure, (axes,) = panels(1, len(shown), height=2.9, width=3.0 + 2.0 * len(shown))
+    for a, one, letter in zip(axes, shown, "abb", strict=False):
         shade = orbit(a, one, "B", letter, one.label.replace(", undamped", ",\nundamped"))
-    axes[1, 2].set_visible(False)
-    square(axes.flat, ROOM * 0.3)
-    for a in axes[:, 1:].flat:
+    square(axes, ROOM * 0.3)
+    for a in axes[1:]:
         a.set_ylabel("")
-    figure.colorbar(shade, ax=list(axes.flat), label="time (s)", aspect=50)
+    figure.colorbar(shade, ax=list(axes), label="time (s)", aspect=30)
     return figure
 
 
@@ -58,15 +54,21 @@ def figure_21(shown: list[Shown]) -> Any:
 
 
 FIGURES = (
-    Drawn("18", "abcde", "Rigid and flexible rod of the same mass, 0.5 kg.", LIGHT, figure_18),
+    Drawn("18", "abcde", "Rigid and flexible rod of the same mass, 0.5 kg.", fine(LIGHT),
+          figure_18),
     Drawn("18 with the mass of the section", "abcde",
           "Rigid and flexible rod of the same mass, 3.454 kg, that of the section in steel.",
-          HEAVY, figure_18),
+          fine(HEAVY), figure_18),
     Drawn("18 with the tables as they stand", "abcde",
-          "A rigid rod of 0.5 kg and a flexible one of 3.454 kg, without damping.", TABLES,
-          figure_18),
-    Drawn("19", "ab", "Orbits of the journal at B with five rods.", ALL, figure_19),
-    Drawn("20", "ab", "Phase diagrams of the door with rigid and flexible rods; below them its "
-          "acceleration.", (*LIGHT, *HEAVY), door),
+          "A rigid rod of 0.5 kg and a flexible one of 3.454 kg, without damping.",
+          fine(TABLES), figure_18),
+    Drawn("19", "ab", "Orbits of the journal at B with a rigid and a flexible rod of 0.5 kg; (a) "
+          "is that of figure 12 (c).", LIGHT, figure_19),
+    Drawn("19 with the mass of the section", "ab",
+          "Orbits of the journal at B with rods of 3.454 kg.", (*HEAVY, UNDAMPED), figure_19),
+    Drawn("20", "ab", "Phase diagrams of the door with a rigid and a flexible rod of 0.5 kg; below "
+          "them its acceleration; (a) is that of figure 13 (b).", fine(LIGHT), door),
+    Drawn("20 with the mass of the section", "ab", "As figure 20, with rods of 3.454 kg.",
+          fine(HEAVY), door),
     Drawn("21", "", "Poincar\u00e9 sections at B with five rods.", ALL, figure_21),
 )  # fmt: skip

@@ -37,12 +37,11 @@ def figure_23(shown: list[Shown]) -> Any:
     figure, axes = panels(3, height=1.8, width=6.3, sharex=True)
     for a, letter, axis in zip(axes[:, 0], "abc", "XYZ", strict=True):
         for k in ACTUATORS:
-            channel = f"actuator_{k}.force" if axis == "X" else f"actuator_{k}.reaction"
-            values = one.values(channel)
-            values = values if axis == "X" else values[:, "XYZ".index(axis)]
+            channel = f"actuator_{k}.reaction"  # on the fairing; that on the actuator is drawn
+            values = -one.values(channel)[:, "XYZ".index(axis)]
             a.plot(*thinned(one.time, values), color=colour(k - 1), ls=("-", "-", "--")[k - 1],
                    lw=1.1, label=f"actuator {k}")  # fmt: skip
-        a.set_ylabel(f"{FORCE if axis == 'X' else 'force on the fairing'}\n({one.unit(channel)})")
+        a.set_ylabel(f"reaction force\n({one.unit(channel)})")
         a.margins(x=0.01)
         lettered(a, letter, f"{axis} direction")
     timed(axes[-1])
@@ -69,8 +68,9 @@ def of_each(
 
 
 FIGURES = (
-    Drawn("23", "abc", "Forces of the actuators at one speed of 420 mm/s; X: positive holds the "
-          "fairing back.", (("", "spatial_420"),), figure_23),
+    Drawn("23", "abc", "Forces of the fairing on the actuators at one speed of 420 mm/s. X is "
+          "aft, so that positive is where an actuator holds the fairing back, as in figures 24 to "
+          "26.", (("", "spatial_420"),), figure_23),
     *(Drawn(str(23 + odd), "abc", f"Forces of the actuators along X where actuator {odd} has a "
             "speed of its own, the others 420 mm/s; positive holds the fairing back.", speeds(odd),
             partial(of_each, shades=SHADES)) for odd in ACTUATORS),

@@ -7,7 +7,7 @@ from trsim.report.display import Shown
 from trsim.report.orbits import square
 from trsim.report.style import panels
 from trsim.studies.drawing import Drawn, alike, with_legend
-from trsim.studies.thrust_reverser.cases import SPEED_AB, SPEED_B
+from trsim.studies.thrust_reverser.cases import SPEED_AB, SPEED_B, fine
 from trsim.studies.thrust_reverser.figures.drawing import (
     DOOR,
     ROOM,
@@ -22,10 +22,11 @@ from trsim.studies.thrust_reverser.figures.drawing import (
 def side_by_side(shown: list[Shown], joints: str) -> Any:
     """Velocity, acceleration, contact forces and driving force; a column for each speed."""
     figure, axes = panels(3 + len(joints), 2, height=1.8, width=7.2)
-    letters = iter("abcdefghij")
+    letters = iter("abcdefgh")
     for row, of in zip(axes, (*DOOR[1:], *joints, "actuator.force"), strict=True):
         for a, one in zip(row, shown, strict=True):
-            panel(a, [one], of, next(letters), one.label)
+            letter = "" if of == "A" else next(letters)  # the study has the force at B alone
+            panel(a, [one], of, letter, one.label)
             if of in joints:
                 a.set_ylabel(f"force at {of}\n(N)")
     timed(axes[-1])
@@ -76,7 +77,7 @@ FIGURES = (
     Drawn("15", "ab", "Orbits of the journals at two speeds, 0.5 mm at A and B.", SPEED_AB,
           figure_15),
     Drawn("16", "abcd", "Phase diagrams of the journals at two speeds, 0.5 mm at A and B.",
-          SPEED_AB, figure_16),
+          fine(SPEED_AB), figure_16),
     Drawn("17", "ab", "Poincar\u00e9 sections at two speeds, 0.5 mm at A and B.", SPEED_AB,
           figure_17),
 )  # fmt: skip
