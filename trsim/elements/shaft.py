@@ -123,7 +123,9 @@ ELEMENT = joint(
     kernels={"measure": measure},
     channels=(
         Channel("locating_force", "N", "force on the second body at this bearing, world axes", 3),
-        Channel("floating_force", "N", "force on the second body at the other bearing, world axes", 3),
+        Channel(
+            "floating_force", "N", "force on the second body at the other bearing, world axes", 3
+        ),
         Channel("locating_load", "N", "size of the force at the locating bearing", least=0.0),
         Channel("floating_load", "N", "size of the force at the floating bearing", least=0.0),
     ),

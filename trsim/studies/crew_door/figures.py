@@ -8,6 +8,7 @@ import numpy as np
 
 from trsim.report.display import Shown
 from trsim.report.style import colour, panels, thinned
+from trsim.scenario.methods import METHODS
 from trsim.studies.claim import Cases
 from trsim.studies.crew_door import side_view
 from trsim.studies.drawing import Drawn, alike, lettered, with_legend
@@ -43,7 +44,7 @@ def over(shown: list[Shown], x: str, of: Sequence[Panel], most: float = np.inf) 
     A run keeps its colour; of several curves of one run each has a dash of its own.  A static path
     beside a motion is a thin black line over it.
     """
-    still = [one.run.group("solver")["method"] == "static_path" for one in shown]
+    still = [METHODS[str(one.run.group("solver")["method"])].rests for one in shown]
     figure, axes = panels(len(of), 1, height=2.3, width=6.8)
     for a, panel, letter in zip(axes[:, 0], of, "abcdef", strict=False):
         for k, one in enumerate(shown):
