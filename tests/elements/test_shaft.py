@@ -174,6 +174,25 @@ sensors:
     assert np.ptp(whole["cut.bending"]) > 0.1
 
 
+@pytest.mark.parametrize(("x", "way"), [(1, 1), (1, -1), (0, 1), (0, -1)])
+def test_a_listed_shaft_has_beyond_a_section_at_a_bearing_only_that_one(x, way):
+    """10 kg at a quarter of the span: a section at either bearing, which is listed as beyond."""
+    beyond = 10 if way * (0.25 - x) > 0 else 0
+    mass = "10 kg, centre: [0.25, 0, 0], inertia: [0.1, 0.1, 0.1]" if beyond else "0"
+    r = run(f"""
+bodies: {{roll: {{mass: 10, inertia: [0.1, 0.1, 0.1], at: [0.25, 0, 0]}}}}
+joints: {{axle: {{type: shaft, bodies: [ground, roll], at: [0, 0, 0], floating: [1, 0, 0]}}}}
+sensors: {{cut: {{type: section, body: roll, at: [{x}, 0, 0], axis: [{way}, 0, 0], mass: {mass},
+                beyond: [axle]}}}}
+gravity: [0, 0, -9.81]
+solver: {{end: 0.01}}
+""")
+    # with the roll beyond it both bearings are
+    carried = 0.0 if beyond else (0.25 if x == 1 else 0.75) * 98.1
+    assert r["cut.shear"][-1] == pytest.approx(carried, abs=1e-8)
+    assert r["cut.bending"][-1] == pytest.approx(0.0, abs=1e-8)
+
+
 def test_friction_is_that_of_both_bearings():
     """A roll overhung by half the span coasts: its bearings carry 0.5 and 1.5 of its weight, both
     ways, and brake it together: I alpha = mu r (|F_1| + |F_2|)."""

@@ -438,3 +438,55 @@ def test_a_drive_with_a_velocity_begins_where_another_joint_puts_its_own():
     with pytest.raises(ModelError, match="fixes this joint already") as caught:
         run(CRANK.replace("MOTION", "position: 5*t"))
     assert caught.value.path == ("initial", "guide")
+
+
+SUM = """
+bodies:
+  a: {mass: 1, inertia: 0.01, at: [0, 0]}
+  b: {mass: 1, inertia: 0.01, at: [1, 0]}
+  c: {mass: 1, inertia: 0.01, at: [2, 0]}
+joints:
+  one: {type: revolute, bodies: [ground, a], at: [0, 0]}
+  two: {type: revolute, bodies: [ground, b], at: [1, 0]}
+  mean: {type: revolute, bodies: [ground, c], at: [2, 0]}
+  sum: {type: coupler, joints: [mean, one, two], coefficients: [2, -1, -1]}
+drives: {DRIVES}
+sensors: {x: {joint: one}, y: {joint: two}}
+initial: {VALUES}
+solver: {end: 1}
+"""
+ONE, TWO = "first: {joint: one, velocity: 1}", "second: {joint: two, MOTION}"
+
+
+@pytest.mark.parametrize("drives", [(ONE, TWO), (TWO, ONE)])
+def test_of_two_drives_that_could_give_way_the_file_says_which(drives):
+    """2 z = x + y: where z alone is given, neither x nor y follows."""
+    text = SUM.replace("DRIVES", ", ".join(drives))
+    both = text.replace("MOTION", "velocity: 2")
+    with pytest.raises(ModelError, match="nothing tells which") as caught:
+        run(both.replace("VALUES", "mean: 0.5"))
+    assert caught.value.path == ("initial", "mean")
+    r = run(both.replace("VALUES", "mean: 0.5, two: 0.2"))
+    assert (r["x"][0], r["y"][0]) == pytest.approx((0.8, 0.2), abs=1e-12)
+    assert (r["x"][-1], r["y"][-1]) == pytest.approx((1.8, 2.2), abs=1e-12)
+    # a place that is prescribed stays
+    r = run(text.replace("MOTION", "position: 0.3 + t").replace("VALUES", "mean: 0.5"))
+    assert (r["x"][0], r["y"][0]) == pytest.approx((0.7, 0.3), abs=1e-12)
+
+
+def test_an_actuator_with_a_velocity_begins_where_a_value_puts_its_ends():
+    """The crank at the angle f: the slider is where the law of cosines has it."""
+    ram = "ram: {type: actuator, bodies: [ground, slider], points: [[1, 0], [END, 0]], MORE}"
+    text = CRANK.replace("motor: {joint: bearing, MOTION}", ram).replace(
+        "END", str(0.08 + 0.0364**0.5)
+    )
+    text = text.replace("guide: -40 mm", "bearing: 0.4")
+    r = run(text.replace("MORE", "velocity: -0.1"))
+    f, end = 0.4 + np.arctan2(0.06, 0.08), 0.08 + 0.0364**0.5
+    begin = 0.1 * np.cos(f) + np.sqrt(0.04 - (0.1 * np.sin(f)) ** 2) - end
+    assert r["turn"][0] == pytest.approx(0.4, abs=1e-10)
+    assert r["stroke"] == pytest.approx(begin + 0.1 * r.t, abs=1e-9)
+    assert r["ram.position"] == pytest.approx(-begin - 0.1 * r.t, abs=1e-9)
+    with pytest.raises(ModelError, match="a value of `initial`") as caught:
+        run(text.replace("MORE", "position: -0.1*t"))
+    assert caught.value.path == ("drives", "ram")

@@ -14,7 +14,7 @@ from trsim.studies.crew_door import STUDY, checks
 from trsim.studies.crew_door.side_view import LEAN, world
 from trsim.studies.numbers import number, word
 from trsim.studies.runs import Runs
-from trsim.studies.single import apart_by, bounded, differ, other_signs
+from trsim.studies.single import apart_by, bounded, differ, grows, other_signs, part_of
 from trsim.studies.study import paper
 from trsim.sweep.go import go
 from trsim.sweep.plan import plan
@@ -33,6 +33,8 @@ def one(*values):
         (apart_by(1.0, 2.0, 1.0, "N"), (3.0, -4.5), (3.0, 2.0)),
         (differ(1.0, "N"), (3.0, 1.5), (3.0, 3.5)),
         (other_signs(), (3.0, -0.1), (3.0, 0.1)),
+        (part_of(0.1), (-0.2, 3.0), (-0.4, 3.0)),
+        (grows(0.1), (1.0, 1.2, 1.4), (1.0, 1.2, 1.25)),
     ],
 )
 def test_rules(rule, yes, no):
@@ -98,7 +100,7 @@ def test_what_was_run_is_judged(page):
     verdicts = {(r["claim"], r["reading"]): r["verdict"] for r in rows(page / "claims.csv")}
     assert verdicts["wire", ""] == verdicts["rod_idle", "one man running"] == "confirmed"
     assert verdicts["gap_angle", "static path"] == "confirmed"
-    assert verdicts["inertia", ""] == "undetermined"  # not run here
+    assert verdicts["inertia", "70 to 94.5 deg"] == "undetermined"  # not run here
     text = (page / "index.html").read_text()
     for part in ("Critical values over all cases", "How every case ended", "not run: "):
         assert part in text

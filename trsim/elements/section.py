@@ -223,13 +223,12 @@ def beyond(spec, at, i, a):
         if name not in names:
             what = f"no joint, drive or force named '{name}' acts on '{spec.body}'"
             raise ScenarioError(what, known(name, names), ("beyond", k))
-    # of a shaft whose bearings lie on both sides each is where it is
-    both = {x.name for (_, x, _), side in zip(acting, sides, strict=True) if side == {1}}
-    both &= {x.name for (_, x, _), side in zip(acting, sides, strict=True) if side == {-1}}
+    # of a shaft with one bearing before the section that one stays there
+    apart = {x.name for (_, x, _), side in zip(acting, sides, strict=True) if side != {-1}}
     return [
         one for one, side in zip(acting, sides, strict=True)
         if {one[1].name, at.joint_of(one[1])} & {*spec.beyond}
-        and not (one[1].name in both and side == {-1})
+        and not (one[1].name in apart and side == {-1})
     ]  # fmt: skip
 
 

@@ -123,7 +123,13 @@ ELEMENT = joint(
     kernels={"measure": measure},
     channels=(
         Channel("locating_force", "N", "force on the second body at this bearing, world axes", 3),
+<<<<<<< HEAD
         Channel("floating_force", "N", "the same at the other bearing, world axes", 3),
+=======
+        Channel(
+            "floating_force", "N", "force on the second body at the other bearing, world axes", 3
+        ),
+>>>>>>> f73c5219740e5f225d05f2e7f4a0e343d3dd76bd
         Channel("locating_load", "N", "size of the force at the locating bearing", least=0.0),
         Channel("floating_load", "N", "size of the force at the floating bearing", least=0.0),
     ),

@@ -45,6 +45,17 @@ def steps(side: int, margin: float = NEWTONS, unit: str = "N") -> Rule:
     return Rule(f"each case {way(side)} the one before it by more than {margin:g} {unit}", judge)
 
 
+def grows(share: float) -> Rule:
+    """Each case is above the one before it by more than a share."""
+
+    def judge(values: Array) -> Judged:
+        found = values[1:, 0] / values[:-1, 0] - 1.0
+        told = ", then ".join(f"{100.0 * step:+.3g}" for step in found).replace("-", "\u2212")
+        return judged(bool((found > share).all()), f"{told} %")
+
+    return Rule(f"each case above the one before it by more than {100.0 * share:g} %", judge)
+
+
 def beyond(side: int) -> Rule:
     """The last case is above (side 1) or below (-1) all others, by more than what is seen."""
 
@@ -139,6 +150,17 @@ def apart_by(low: float, high: float, factor: float, unit: str) -> Rule:
     most = f" and {factor * high:.3g}" if high < NO_BOUND else ""
     between = f"between {factor * low:.3g}{most}" if most else f"above {factor * low:.3g}"
     return Rule(f"second less first {between} {unit}".replace("-", "\u2212"), judge)
+
+
+def part_of(share: float) -> Rule:
+    """The size of the first case is at most a share of that of the second."""
+
+    def judge(values: Array) -> Judged:
+        first, second = np.abs(values[:, 0])
+        told = f"{100.0 * first / second:.3g} % of the second"
+        return judged(bool(first <= share * second), told)
+
+    return Rule(f"the first at most {100.0 * share:g} % of the second", judge)
 
 
 def differ(margin: float, unit: str) -> Rule:

@@ -206,7 +206,7 @@ def turns_through(
     # g0 + x (r0 + x (a + x b)), at the roots of its slope
     a, b = 3.0 * (g1 - g0) - 2.0 * r0 - r1, 2.0 * (g0 - g1) + r0 + r1
     root = np.sqrt(a * a - 3.0 * b * r0)  # the slope changes its sign inside: there is one
-    x = r0 / (root - a)
+    x = r0 / (root - a) if a <= 0.0 else (a + root) / (-3.0 * b)  # neither cancels
     top = g0 + x * (r0 + x * (a + x * b))
     arch = top - max(g0, g1)
     return bool(arch > FLATTEST * size and top > -NEARLY * arch)

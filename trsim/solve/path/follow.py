@@ -139,6 +139,7 @@ class Path:
         for k, (x, _) in enumerate(self.looks.values(place, out)):
             self.looks.side[k] = float(np.sign(x))
         self.judge(place)
+        self.log.astray(place, self.scenario.initial.values)
         if self.looks.sense == -1.0:
             self.log.falls.append((0.0, f"the equilibrium is unstable{self.log.where(place)}"))
         return place

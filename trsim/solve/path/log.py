@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 
 TOLD = 0.05  # of the largest force of a drive: what inertia may add untold
 SHOWN = 4  # coordinates of joints in a sentence
+FAR = {"angle": 0.5, "stroke": 0.1}  # rad, and of the mechanism's size: no longer where it was put
 BOTH = 1.5  # signs beyond it are those of places where nothing is free
 
 
@@ -89,6 +90,23 @@ class Log:
             return
         word = "unstable" if change.to < 0.0 else "stable again"
         self.falls.append((place.t, f"the equilibrium is {word}{self.where(place)}"))
+
+    def astray(self, place: Place, values: dict[str, float]) -> None:
+        """Tell where the start is far from values of `initial`, which do not hold in a balance."""
+        poses(self.eq.work, place.y)
+        for name, x in self.mechanism.coordinates.items():
+            if name not in values or x.kind not in FAR:
+                continue
+            off = abs(float(self.eq.work.S[x.entry, 0]) - values[name])
+            off = abs((off + np.pi) % (2.0 * np.pi) - np.pi) if x.kind == "angle" else off
+            if off > FAR[x.kind] * (self.eq.work.size if x.kind == "stroke" else 1.0):
+                text = (
+                    f"is {off:.3g} {'rad' if x.kind == 'angle' else 'm'} from the value of '{name}'"
+                )
+                text = (
+                    f"the balance{self.where(place)} {text} under `initial`: is it the one meant?"
+                )
+                self.falls.append((place.t, text))
 
     def where(self, place: Place) -> str:
         """The coordinates of joints at a place, in words."""

@@ -8,6 +8,7 @@ stops stay closed, and what is then still free of the named joints has zero rate
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,7 @@ from trsim.solve.start.velocities import velocities
 
 Array = NDArray[np.float64]
 
+HOLD = "hold "  # before a joint: the drive that puts it where `initial` wants it
 CREEP = 1e-2  # of a body's reach: motion over less in a whole run counts as none
 FARTHEST = 1.0  # rad: what a joint is turned by in a step of the way to its initial position
 COUNTED = 2.5  # rad: the same of joints that are moved along, as a thread: half a turn is 3.14
@@ -273,38 +275,59 @@ def held_still(
     motion begins where the values put its joint.
     """
     free: set[str] = set()
-    while True:
-        conflict = fixed_twice(scenario, initial, ideal, planar, free)
-        if not conflict:
-            drives = holding_drives(scenario, initial, free)
-            return assemble(scenario, ideal, drives, stiff=stiff, planar=planar)
-        for name, drive in scenario.drives.items():
-            if name in free or getattr(drive, "velocity", None) is None:
-                continue
+    told = ""
+    while conflict := fixed_twice(scenario, initial, ideal, planar, free):
+        told = told or conflict
+        for name in giving_way(scenario, free):
             if fixed_twice(scenario, initial, ideal, planar, {*free, name}) != conflict:
                 free.add(name)
                 break
         else:
+            raise held_already(conflict)
+    for name, other in product(sorted(free), giving_way(scenario, free)):
+        if not fixed_twice(scenario, initial, ideal, planar, {*free - {name}, other}):
+            both = " and ".join(f"'{n}'" for n in scenario.drives if n in (name, other))
             raise ModelError(
-                "a drive, or another value of `initial`, fixes this joint already",
-                "give one value for each degree of freedom",
-                ("initial", conflict),
+                f"{both} could begin elsewhere for it, and nothing tells which of them does",
+                "give a value of the joint of one of them, too",
+                held_already(told).path,
             )
+    drives = holding_drives(scenario, initial, free)
+    return assemble(scenario, ideal, drives, stiff=stiff, planar=planar)
+
+
+def giving_way(scenario: Any, free: set[str]) -> list[str]:
+    """The drives with a velocity, whose place may follow, but those that are left out already."""
+    drives = scenario.drives.items()
+    return [n for n, d in drives if n not in free and getattr(d, "velocity", None) is not None]
+
+
+def held_already(conflict: str) -> ModelError:
+    """What `fixed_twice` found, in words."""
+    if not conflict.startswith(HOLD):
+        return ModelError(
+            "a value of `initial` fixes what this drive moves",
+            "drop the value, or prescribe the velocity of the drive",
+            ("drives", conflict),
+        )
+    return ModelError(
+        "a drive, or another value of `initial`, fixes this joint already",
+        "give one value for each degree of freedom",
+        ("initial", conflict.removeprefix(HOLD)),
+    )
 
 
 def fixed_twice(
     scenario: Any, initial: Any, ideal: frozenset[str], planar: bool, free: set[str]
 ) -> str:
-    """The first value of `initial` that something else fixes already, where there is one."""
+    """The first hold or drive that moves what others fix already, where there is one."""
+    drives = holding_drives(scenario, initial, free)
     try:
-        assemble(
-            scenario, ideal, holding_drives(scenario, initial, free), stiff=True, planar=planar
-        )
+        assemble(scenario, ideal, drives, stiff=True, planar=planar)
     except ModelError as error:
-        name = str(error.path[-1]).removeprefix("hold ") if error.path[:1] == ("drives",) else ""
-        if name not in initial.values:
+        if error.path[:1] != ("drives",):
             raise
-        return name
+        return str(error.path[-1])
     return ""
 
 
@@ -317,7 +340,7 @@ def holding_drives(scenario: Any, initial: Any, free: set[str]) -> dict[str, Any
         if called(getattr(d, "joint", ""), joints) in initial.values
     }  # fmt: skip
     drives = {n: d.at_rest() for n, d in scenario.drives.items() if n not in moved}
-    return drives | {f"hold {name}": hold(name) for name in initial.values}
+    return drives | {f"{HOLD}{name}": hold(name) for name in initial.values}
 
 
 def approach(

@@ -2,6 +2,9 @@
 
 DEGREE = 3.141592653589793 / 180.0
 LATCH = "@latch_angle=0.0..1.9"  # rad
+PUSHED = "@latch_angle=0.2..1.5"
+LAST = "@latch_angle=1.22..1.9"  # and as far as the static path goes
+UNDER_WAY = "@opening=0.35..1.66"  # without the start, where nothing moves yet
 TOP, LATE = "@latch_angle=0.2..1.6", "@latch_angle=1.22..1.65"
 HANDS = (("inner handle", "lift_inner"), ("outer handle", "lift_outer"))
 PRESSED = (("inner handle", "lift_inner_op"), ("outer handle", "lift_outer_op"))

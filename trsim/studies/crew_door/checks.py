@@ -25,7 +25,7 @@ TIGHT = (  # (case, the same a hundred times tighter, numbers that are compared)
                                     "hinge.floating_load")),
 )  # fmt: skip
 CHANGE = ("case", "number", "tolerance 1e-6", "1e-8", "change [%]")
-WANTED = ("P2P6", "P7P10", "cb_rod_force", "wire.force", "hinge.locating_load",
+WANTED = ("handle.force", "P2P6", "P7P10", "cb_rod_force", "wire.force", "hinge.locating_load",
           "hinge.floating_load", "latch_section.bending", "*_stop1.normal_force",
           "*_guide.normal_force")  # fmt: skip
 CRITICAL = ("quantity", "extreme", "value", "unit", "case", "time [s]", "latch [deg]",

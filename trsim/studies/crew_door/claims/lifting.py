@@ -6,10 +6,12 @@ from trsim.studies.crew_door.cases import (
     DEGREE,
     FIRST,
     HANDS,
+    LAST,
     LATE,
     MOTION,
     MOTION_OP,
     PRESSED,
+    PUSHED,
     TOP,
 )
 from trsim.studies.single import apart_by, bounded, near, steps
@@ -117,9 +119,7 @@ CLAIMS = (
         tuple(
             Reading(
                 name,
-                over(
-                    f"peak:{channel}@latch_angle=0.2..1.5", ("none", case), ("2500 N", f"{case}_op")
-                ),
+                over(f"largest:{channel}{PUSHED}", ("none", case), ("2500 N", f"{case}_op")),
             )
             for case, hand in (("lift_inner", "inner"), ("lift_outer", "outer"))
             for name, channel in (
@@ -136,7 +136,17 @@ CLAIMS = (
         "Above 70 deg of the latch the motion departs from the static calculation by far, at less "
         "than 6 deg/s of the handle.",
         bounded(57.0, 1e9, "by more than 57 N, a tenth of the largest force at the guide"),
-        one(Series("guide, 70 to 95 deg", "lift_inner", f"apart:fwd_guide.normal_force{LATE}")),
+        (
+            Reading(
+                "70 to 94.5 deg",
+                (Series("guide", "lift_inner", f"apart:fwd_guide.normal_force{LATE}"),),
+            ),
+            Reading(
+                "70 deg to the end of the path",
+                (Series("guide", "lift_inner", f"apart:fwd_guide.normal_force{LAST}"),),
+            ),
+        ),
+        note="the path ends at 96 deg, where the roller leaves the guide",
     ),
     Claim(
         "inertia_pressed",
@@ -148,6 +158,7 @@ CLAIMS = (
             Series("none", "lift_inner", f"apart:fwd_guide.normal_force{LATE}"),
             Series("2500 N", "lift_inner_op", f"apart:fwd_guide.normal_force{LATE}"),
         ),
+        note="70 to 94.5 deg; of the largest force there either is 1 %",
     ),
     Claim(
         "let_go_angle",

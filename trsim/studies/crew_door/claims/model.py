@@ -2,7 +2,7 @@
 
 from trsim.studies.claim import Claim, Reading, Series, one, over
 from trsim.studies.crew_door.cases import TOP
-from trsim.studies.single import bounded, near, steps
+from trsim.studies.single import bounded, grows, near, steps
 
 CLAIMS = (
     Claim(
@@ -25,14 +25,13 @@ CLAIMS = (
         "3.1",
         "40",
         "Penetration takes the top of the cam off: the roller passes it more easily.",
-        steps(1, 0.1, "N"),
+        grows(0.01),
         (
             Reading(
                 "largest force at the guide",
                 over(
                     f"peak:fwd_guide.normal_force{TOP}",
                     ("3e7", "lift_inner_soft"),
-                    ("3e8", "lift_inner"),
                     ("6e8", "lift_inner_stiff"),
                 ),
             ),
@@ -41,12 +40,11 @@ CLAIMS = (
                 over(
                     f"peak:handle.force{TOP}",
                     ("3e7", "lift_inner_soft"),
-                    ("3e8", "lift_inner"),
                     ("6e8", "lift_inner_stiff"),
                 ),
             ),
         ),
-        note="stiffness of the contact in N/m^1.5",
+        note="stiffness of the contact in N/m^1.5, a tenth and twice that of the other cases",
     ),
     Claim(
         "springs",
@@ -79,11 +77,9 @@ CLAIMS = (
         "residual",
         "3.2",
         "",
-        "A hand load put back in place of the measured torque leaves a torque of a few per cent.",
-        bounded(0.0, 0.01, "at most a hundredth of the first peak is left after one pass"),
-        one(
-            Series("after one pass", "sizing", "left:2"), Series("at the end", "sizing", "left:-1")
-        ),
+        "A hand load put back in place of the measured torque leaves a few per cent of it at most.",
+        bounded(0.0, 0.03, "at most 3 % of the first peak"),
+        one(Series("after one pass", "sizing", "left:2")),
         note="the load is then put back again until less than 1e-6 is left",
     ),
 )
