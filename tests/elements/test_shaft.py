@@ -213,3 +213,17 @@ solver: {end: 1, tolerance: 1e-9}
     assert collar["rub.normal_force"][-1] == pytest.approx(2 * 98.1 + 30 * 30 / 20, rel=1e-9)
     with pytest.raises(TrsimError, match="a shaft has no `length`"):
         built(loads(text.replace("MORE", ", length: 1")))
+
+
+@pytest.mark.parametrize(("span", "out"), [(0.05, 25.0), (0.01, 25.0), (1e-6, 0.25), (1e3, 0.1)])
+def test_bearings_that_are_near_or_far(span, out):
+    """A weight overhung by far more than the distance of the bearings: its lever over theirs."""
+    r = run(f"""
+bodies: {{boom: {{mass: 10, inertia: [3, 3, 3], at: [{span + out}, 0, 0]}}}}
+joints: {{axle: {{type: shaft, bodies: [ground, boom], at: [0, 0, 0], floating: [{span}, 0, 0]}}}}
+gravity: [0, 0, -9.81]
+solver: {{end: 0.01}}
+""")
+    far = 98.1 * (span + out) / span
+    assert r["axle.floating_force"][-1] == pytest.approx([0, 0, far], rel=1e-9, abs=1e-9 * far)
+    assert r["axle.locating_force"][-1, 2] == pytest.approx(98.1 - far, abs=1e-9 * far)

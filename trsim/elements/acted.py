@@ -7,28 +7,36 @@ alone.
 from typing import NamedTuple
 
 from trsim.elements.contract import FIRST_ROW, Pair, call_kernel
-from trsim.elements.frames import plus
-from trsim.kernels.columns import i8, run
+from trsim.elements.frames import arm, cross, minus, plus, scaled
+from trsim.elements.rows import Axes
+from trsim.kernels.columns import f8, i8, run
 from trsim.kernels.lazy import internal
 
 PUSHES = {"force", "rub"}  # kernels that push; what rubs does so by forces found before
 
 
-class Part(NamedTuple):
-    """Constraint rows of an instance that hold its bodies at a place of their own."""
+WHOLE, LOCATING, FLOATING = range(3)  # of what constraint rows do, on a shaft by its bearings
 
-    first: int  # of its rows
-    rows: int
+
+class Part(NamedTuple):
+    """What the constraint rows of an instance do at a place."""
+
+    share: int
     places: tuple  # (frame, point in its axes from its centre) on either body
 
 
+class TwoBearings(Axes):
+    """Of a joint on two bearings: the locating one at its place, the other one along its axis."""
+
+    span: f8  # m, between them
+
+
 def parts_of(instance):
-    """Its rows by their places; of most elements all together."""
+    """What its rows do, by the places; of most elements all of it at once."""
     element, row = instance.element, instance.row
     if element.bearings:
         return element.bearings(row)
-    places = element.acts_at(row) if element.acts_at else ()
-    return (Part(0, len(element.rows), places),)
+    return (Part(WHOLE, element.acts_at(row) if element.acts_at else ()),)
 
 
 class Acted(Pair):
@@ -36,7 +44,7 @@ class Acted(Pair):
 
     number: i8  # of what acts
     pushes: i8  # 1: some of that are no constraint rows
-    members: run(i8)  # of each its instance, the first of its constraint rows and how many
+    members: run(i8)  # of each its instance, how many constraint rows it has, and which share
 
 
 def acting(members):
@@ -44,7 +52,7 @@ def acting(members):
     return {
         "number": len(members),
         "pushes": any(PUSHES & {*instance.element.kernels} for _, instance, _ in members),
-        "members": [n for e, _, part in members for n in (e, part.first, part.rows)],
+        "members": [n for e, x, part in members for n in (e, len(x.element.rows), part.share)],
     }
 
 
@@ -59,8 +67,8 @@ def wrench(t, scene, e):
     own = Acted(scene, e)
     f, m = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for k in range(own.number):
-        e_k, first, rows = own.members[3 * k], own.members[3 * k + 1], own.members[3 * k + 2]
-        f_k, m_k = of_rows(scene, own.i, e_k, first, rows)
+        e_k, rows, share = own.members[3 * k], own.members[3 * k + 1], own.members[3 * k + 2]
+        f_k, m_k = share_of(scene, own.i, e_k, rows, share)
         f, m = plus(f, f_k), plus(m, m_k)
     if own.pushes == 1:
         f_k, m_k = pushed(t, scene, e)
@@ -69,10 +77,27 @@ def wrench(t, scene, e):
 
 
 @internal
-def of_rows(scene, i, e, first, rows):
-    """What some of the constraint rows of instance e put on a body."""
+def share_of(scene, i, e, rows, share):
+    """What the constraint rows of instance e put on a body; of two bearings what one of them does:
+    neither carries a moment, so that of all rows at the locating one is l a x F of the other."""
+    f, m = of_rows(scene, i, e, rows)
+    if share == WHOLE:
+        return f, m
+    X, own = scene.X, TwoBearings(scene, e)
+    p = arm(X, i, own.p_i) if i == own.i else arm(X, i, own.p_j)
+    a = arm(X, own.i, own.a_i)
+    floating = scaled(1.0 / own.span, cross(minus(m, cross(p, f)), a))
+    if share == FLOATING:
+        return floating, cross(plus(p, scaled(own.span, a)), floating)
+    locating = minus(f, floating)
+    return locating, cross(p, locating)
+
+
+@internal
+def of_rows(scene, i, e, rows):
+    """What the constraint rows of instance e put on a body."""
     J, f, m = scene.J, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    for r in range(FIRST_ROW + first, FIRST_ROW + first + rows):
+    for r in range(FIRST_ROW, FIRST_ROW + rows):
         row = scene.con[e, r]
         if row >= 0:
             pull = -scene.lam[row]

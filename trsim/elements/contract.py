@@ -326,7 +326,7 @@ class Element:
     # body, turns it included; the point is None where nobody can tell it.  None: its rows alone say
     # which bodies it holds
     acts_at: Callable[[Row], tuple] | None = None
-    # (row) -> acted.Part of rows that hold bodies at places of their own.  None: all at one
+    # (row) -> acted.Part of each place at which its rows do a share.  None: all of it at one
     bearings: Callable[[Row], tuple] | None = None
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on

@@ -359,15 +359,8 @@ def point_rows(scene, e):
 @internal
 def along_row(scene, e, u, k):
     """u . d as row k, u an arm of body i (world axes), d the separation of the points of e."""
-    i, p_i, j, p_j = two_points(scene, e)
-    separation_row(scene, (i, p_i), (j, p_j), u, k)
-
-
-@internal
-def separation_row(scene, on_i, on_j, u, k):
-    """The same of any two points: a body and the arm of a point, of either."""
-    (i, p_i), (j, p_j) = on_i, on_j
     V, phi, phi_t, gamma = scene.V, scene.phi, scene.phi_t, scene.gamma
+    i, p_i, j, p_j = two_points(scene, e)
     d = separation(scene.X, i, p_i, j, p_j)
     # the direction turns with body i, so its lever on i reaches to the point on j
     lines(scene, k, u, cross(plus(p_i, d), u), cross(p_j, u))

@@ -44,11 +44,7 @@ def over(shown: list[Shown], x: str, of: Sequence[Panel], most: float = np.inf) 
     A run keeps its colour; of several curves of one run each has a dash of its own.  A static path
     beside a motion is a thin black line over it.
     """
-<<<<<<< HEAD
     still = [METHODS[one.run.group("solver")["method"]].rests for one in shown]
-=======
-    still = [METHODS[str(one.run.group("solver")["method"])].rests for one in shown]
->>>>>>> f73c5219740e5f225d05f2e7f4a0e343d3dd76bd
     figure, axes = panels(len(of), 1, height=2.3, width=6.8)
     for a, panel, letter in zip(axes[:, 0], of, "abcdef", strict=False):
         for k, one in enumerate(shown):
