@@ -221,3 +221,11 @@ def test_the_hand_takes_over_from_the_drive():
     scenario = load(DOOR / "sizing.yaml", list(sizes))
     found = sized(scenario)
     assert found.relative[0] == 1.0 and found.relative[-1] < 1e-6
+
+
+def test_rates_of_a_path_are_largest_in_a_row():
+    """Where the roller comes to the guide, between two rows, the path has two speeds."""
+    r = door("jam_outer", "parameters.hand=-1334", "solver.end=3.7")
+    for name in ("opening.rate", "yoke.angular_velocity"):
+        rows = r[name] if r[name].ndim == 1 else r[name][:, 0]
+        assert r.largest(name)[0] == pytest.approx(rows.max(), rel=1e-12)

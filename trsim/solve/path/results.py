@@ -44,6 +44,11 @@ class Results:
             alone = any(unit in c.unit.split("/")[0] for unit in AT_REST)
             self.told[c.start : c.start + c.size] = alone
         squares = len(w.vector)
+        # at a corner, which lies between two rows, a path has two speeds, and none of them counts
+        rates = np.zeros(w.n_out, bool)
+        for c in mechanism.columns:
+            rates[c.start : c.start + c.size] = "/s" in c.unit
+        self.rates = np.concatenate([rates, rates[w.vector]])
         self.peak = np.zeros((rec.N_PEAK, w.n_out + squares))
         self.peak[rec.PEAK_MAX], self.peak[rec.PEAK_MIN] = -1e300, 1e300
         self.rows: list[Array] = []
@@ -129,6 +134,7 @@ class Results:
     def keep(self, place: Place, a: Array, row: bool) -> Array:
         """Take a place that is known with its accelerations: works, peaks, steps, inertia."""
         self.worked(place)
+        row = row or not self.rows
         out = self.out(place, a)
         energies = out[self.w.column_energy :]
         if not self.rows:
@@ -142,9 +148,9 @@ class Results:
         squares = [np.linalg.norm(out[k : k + 3]) for k in self.w.vector.tolist()]
         for k, x in ((rec.PEAK_MAX, 1.0), (rec.PEAK_MIN, -1.0)):
             values = np.array([*out, *squares])
-            further = x * values > x * self.peak[k]
+            further = (x * values > x * self.peak[k]) & (row | ~self.rates)
             self.peak[k, further], self.peak[k + 1, further] = values[further], place.t
-        if row or not self.rows:
+        if row:
             self.rows.append(np.concatenate([[place.t], out]))
         return out
 
