@@ -119,6 +119,7 @@ def bars(shown: list[Shown], of: Sequence[tuple[str, str]], groups: Sequence[str
 
 RUNNING: Cases = tuple((f"{place}, {stair}", f"running,foot={foot},stair={stair}")
                        for place, foot in FEET for stair in STAIRS)  # fmt: skip
+CUT = ("cb_cut.reaction_moment", "counterbalance handle on its arm")
 OTHERS: Cases = (
     ("own weight", "opened"), ("three men", "three_men"), ("wind", "wind_60kt"),
     ("arm, aft", "side_arm_aft"), ("arm, fwd", "side_arm_fwd"),
@@ -130,14 +131,16 @@ LOADS = (("hinge.locating_load", "hinge fwd"), ("hinge.floating_load", "hinge af
 
 def bars_of_others(shown: list[Shown]) -> Any:
     """Bars of single cases, each with a label of its own."""
-    figure, axes = panels(2, 2, height=2.2, width=6.8)
-    for a, (channel, title), letter in zip(axes.flat, LOADS, "abcd", strict=True):
-        heights = [float(one.run.channel(channel)[-1]) for one in shown]
+    figure, axes = panels(3, 2, height=2.2, width=6.8)
+    of = (*LOADS, CUT)
+    for a, (channel, title), letter in zip(axes.flat, of, "abcde", strict=False):
+        heights = [float(np.linalg.norm(one.run.channel(channel)[-1])) for one in shown]
         a.barh(range(len(shown)), heights, color=colour(0))
         a.set_yticks(range(len(shown)), [one.label for one in shown])
         a.invert_yaxis()
-        a.set_xlabel("force (N)")
+        a.set_xlabel("moment (N m)" if channel == CUT[0] else "force (N)")
         lettered(a, letter, title)
+    axes[-1, -1].axis("off")
     return figure
 
 
@@ -223,7 +226,7 @@ FIGURES: tuple[Drawn, ...] = (
           rod("P2P6", "rod P2P6")),
     hinge("51", "Forces at the hinges in opening, 2.5 s.", FAST, HINGES),
     hinge("54", "Force in the rod of the counterbalance, 2.5 s.", FAST, *COUNTER),
-    Drawn("55", "abcd", "The opened door in other load cases.", OTHERS, bars_of_others),
+    Drawn("55", "abcde", "The opened door in other load cases.", OTHERS, bars_of_others),
     latch("of the latch shaft", "Bending moment of the latch shaft at a bolt hole, in axes that "
           "turn with it.", (("no overpressure", "lift_inner"), ("2500 N", "lift_inner_op"),
                             ("gearbox jammed", "jam_gearbox_inner_open")), SECTION),
