@@ -7,6 +7,8 @@ import pytest
 
 from trsim.errors import FileError, ScenarioError, TrsimError, UsageError
 from trsim.scenario.expand import DEEPEST, MOST, expand, expand_text, parameters, rows
+from trsim.scenario.load import load
+from trsim.sweep.plan import plan
 
 from ..watching import watched
 
@@ -384,3 +386,37 @@ def test_faulty_parameters():
     assert values["b"] == 1.0
     assert parameters(expand_text("parameters: 5"))[1][0].path == ("parameters",)
     assert parameters(expand_text("title: x")) == ({}, [])
+
+
+PRESSED = """
+parameters: {push: 0 N, share: 0.5}
+bodies: {block: {mass: 1, inertia: 1}}
+joints: {hinge: {type: revolute, bodies: [ground, block], at: [0, 0]}}
+solver: {end: 1}
+"""
+
+
+@pytest.mark.parametrize("how", ["set", "extends", "case", "sweep"])
+def test_a_parameter_keeps_its_dimension(tmp_path, how):
+    """An expression would take 2500 Pa for 2500 N."""
+    (tmp_path / "base.yaml").write_text(PRESSED)
+    texts = {
+        "set": "extends: base.yaml",
+        "extends": "extends: base.yaml\nparameters: {push: 2500 Pa}",
+        "case": "extends: base.yaml\ncases: {one: {parameters: {push: 2500 Pa}}}",
+        "sweep": "extends: base.yaml\nsweep: {parameters.push: [2500 Pa]}",
+    }
+    path = tmp_path / "over.yaml"
+    path.write_text(texts[how])
+    with pytest.raises(ScenarioError, match="of another dimension than '0 N'") as caught:
+        if how == "set":
+            load(path, ["parameters.push=2500 Pa"])
+        elif how == "extends":
+            load(path)
+        else:
+            plan(str(path), (), "one")
+    assert caught.value.path == ("parameters", "push")
+    assert caught.value.place is not None
+    for push in ("2.5 kN", "2500", "-3 N"):
+        assert load(path if how == "set" else tmp_path / "base.yaml", [f"parameters.push={push}"])
+    assert load(tmp_path / "base.yaml", ["parameters.share=0.25"])

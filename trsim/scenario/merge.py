@@ -10,11 +10,13 @@ from typing import Any
 
 from trsim.errors import Place, ScenarioError, UsageError, described, known
 from trsim.scenario.text import Tree, read
+from trsim.units import quantity, unit
 
 NAMED = (  # sections whose entries have names
     *("points", "bodies", "joints", "drives", "sensors", "forces", "contact_laws", "events"),
 )
-KNOWN = ("parameters", *NAMED, "templates", "instances")  # --set changes what is there
+PARAMETERS = "parameters"
+KNOWN = (PARAMETERS, *NAMED, "templates", "instances")  # --set changes what is there
 
 
 def keys_of(dotted: str) -> list[str]:
@@ -32,10 +34,23 @@ def mapping(data: Any, key: Any) -> dict[str, Any]:
 
 def merge(base: Tree, over: Tree) -> None:
     """Change `base` into `base` overridden by `over`."""
+    before = mapping(base.data, PARAMETERS)
+    for name, value in mapping(over.data, PARAMETERS).items():
+        path = (PARAMETERS, name)
+        same_dimension(before.get(name), value, path, over.marks.get(path))
     _merge(base, base.data, over.data, ())
     kept = set(_paths(base.data, ()))
     base.marks.update((path, place) for path, place in over.marks.items() if path in kept)
     base.keys.update((path, place) for path, place in over.keys.items() if path in kept)
+
+
+def same_dimension(old: Any, new: Any, path: tuple, place: Place | None) -> None:
+    """Refuse a quantity of another dimension for a parameter: expressions would take its number for
+    one in the old unit."""
+    before, after = (quantity(one, {}) if isinstance(one, str) else None for one in (old, new))
+    if before and after and unit(before[1])[1] != unit(after[1])[1]:
+        what = f"{described(new)} is of another dimension than {described(old)}, which it replaces"
+        raise ScenarioError(what, f"write it in {before[1]}, or in a unit like it", path, place)
 
 
 def _merge(base: Tree, old: Any, new: Any, path: tuple) -> None:
@@ -142,6 +157,8 @@ def put(tree: Tree, keys: list[str], new: Any, at: Place, key_place: Place) -> N
         path = (*path, key)
         tree.marks.setdefault(path, key_place)
         if k == len(keys) - 1:
+            if keys[0] == PARAMETERS and len(keys) == 2 and isinstance(inner, dict):
+                same_dimension(inner.get(key), new, path, at)
             inner[key] = new
         elif isinstance(inner, dict) and inner.get(key) is None:
             inner[key] = {}
