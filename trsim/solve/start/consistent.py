@@ -276,24 +276,29 @@ def held_still(
     """
     free: set[str] = set()
     told = ""
-    while conflict := fixed_twice(scenario, initial, ideal, planar, free):
-        told = told or conflict
+    found = tried(scenario, initial, ideal, planar, free)
+    while isinstance(found, str):
+        told = told or found
         for name in giving_way(scenario, free):
-            if fixed_twice(scenario, initial, ideal, planar, {*free, name}) != conflict:
+            without = tried(scenario, initial, ideal, planar, {*free, name})
+            if without != found:
                 free.add(name)
+                found = without
                 break
         else:
-            raise held_already(conflict)
+            raise held_already(found)
     for name, other in product(sorted(free), giving_way(scenario, free)):
-        if not fixed_twice(scenario, initial, ideal, planar, {*free - {name}, other}):
+        if not isinstance(tried(scenario, initial, ideal, planar, {*free - {name}, other}), str):
             both = " and ".join(f"'{n}'" for n in scenario.drives if n in (name, other))
             raise ModelError(
                 f"{both} could begin elsewhere for it, and nothing tells which of them does",
                 "give a value of the joint of one of them, too",
                 held_already(told).path,
             )
+    if stiff:
+        return found
     drives = holding_drives(scenario, initial, free)
-    return assemble(scenario, ideal, drives, stiff=stiff, planar=planar)
+    return assemble(scenario, ideal, drives, planar=planar)
 
 
 def giving_way(scenario: Any, free: set[str]) -> list[str]:
@@ -303,7 +308,7 @@ def giving_way(scenario: Any, free: set[str]) -> list[str]:
 
 
 def held_already(conflict: str) -> ModelError:
-    """What `fixed_twice` found, in words."""
+    """What `tried` found, in words."""
     if not conflict.startswith(HOLD):
         return ModelError(
             "a value of `initial` fixes what this drive moves",
@@ -317,18 +322,18 @@ def held_already(conflict: str) -> ModelError:
     )
 
 
-def fixed_twice(
+def tried(
     scenario: Any, initial: Any, ideal: frozenset[str], planar: bool, free: set[str]
-) -> str:
-    """The first hold or drive that moves what others fix already, where there is one."""
+) -> Mechanism | str:
+    """The mechanism without some drives; or the first hold or drive that moves what others fix
+    already."""
     drives = holding_drives(scenario, initial, free)
     try:
-        assemble(scenario, ideal, drives, stiff=True, planar=planar)
+        return assemble(scenario, ideal, drives, stiff=True, planar=planar)
     except ModelError as error:
         if error.path[:1] != ("drives",):
             raise
         return str(error.path[-1])
-    return ""
 
 
 def holding_drives(scenario: Any, initial: Any, free: set[str]) -> dict[str, Any]:

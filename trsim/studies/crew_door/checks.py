@@ -1,6 +1,7 @@
 """How every case ended, what holds in each, and the critical envelopes over all of them."""
 
 import math
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +35,7 @@ CRITICAL = ("quantity", "extreme", "value", "unit", "case", "time [s]", "latch [
 Rows = list[tuple[object, ...]]
 
 
+@lru_cache(maxsize=1)  # the tables and the page both ask
 def ends(runs: Runs) -> Rows:
     """How every run ended, and what its books say."""
     return [ended(member) for members in runs.members.values() for member in members]
@@ -50,6 +52,7 @@ def ended(member: Member) -> tuple[object, ...]:
     return found
 
 
+@lru_cache(maxsize=1)
 def changes(runs: Runs) -> Rows:
     """What a hundredth of the tolerance changes of peaks."""
     rows: Rows = []
@@ -63,6 +66,7 @@ def changes(runs: Runs) -> Rows:
     return rows
 
 
+@lru_cache(maxsize=1)
 def critical(runs: Runs) -> Rows:
     """The extremes of what parts are sized by, over all cases, and when they are met."""
     rows: Rows = []
