@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from . import ledger
-from .static_paths import FAMILIES
+from .phased import FAMILIES
 
 
 def show(family: str, seed: int) -> None:

@@ -59,6 +59,7 @@ class Drawn:
     by: str = ENGINE
     forces: bool = True  # reactions are unique, and compared
     truth: Callable[[Scene], Any] | None = None  # where `by` is ONE
+    begins: tuple[float, bool] = (0.0, False)  # when the motion begins, and whether drives let go
 
 
 Family = Callable[[Any], Drawn]

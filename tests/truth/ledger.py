@@ -64,7 +64,7 @@ def chunks(left: list[tuple[str, int]]) -> Iterator[list[tuple[str, int]]]:
 
 def run(count: int, workers: int, of: str | None = None, names: tuple[str, ...] = ()) -> Path:
     """Judge `count` scenes of each family at a commit; what is known of it is not done again."""
-    from .static_paths import FAMILIES
+    from .phased import FAMILIES
 
     at = of or commit()
     file = FOLDER / f"{at[:12]}.jsonl"

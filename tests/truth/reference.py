@@ -503,12 +503,14 @@ class Course:
 
     def __init__(
         self, scene: Scene, times: np.ndarray, rtol: float, apart: float = 0.0, turn: float = 0.12,
-        speeds: Any = 0.0, parts: int = 1, room: int = 0,
+        speeds: Any = 0.0, parts: int = 1, room: int = 0, begin: Any = None,
     ) -> None:  # fmt: skip
         """apart, speeds: a change of the start; parts: into which the run is cut by others;
-        room: for ends of steps, which are kept for extremes."""
+        room: for ends of steps, which are kept for extremes; begin: time, state and stage, where
+        that is not the start."""
         self.s, self.times = scene, times
-        self.stage = Stage()
+        self.begin = begin
+        self.stage = Stage() if begin is None else begin[2]
         self.parts: list[tuple[Builder, list[int], np.ndarray, Any]] = []
         self.crossings: list[tuple[Any, np.ndarray, float]] = []
         self.grazing: list[tuple[str, float, float]] = []
@@ -519,18 +521,20 @@ class Course:
         self.go(rtol, apart, turn, speeds, parts)
 
     def go(self, rtol: float, apart: float, turn: float, speeds: Any, parts: int) -> None:
-        b = Builder(self.s)
-        y = start_state(b)
+        b = Builder(self.s, self.stage)
+        t, y = (
+            (0.0, start_state(b)) if self.begin is None else (self.begin[0], self.begin[1].copy())
+        )
         kept = independent(b, y)
         m = restricted(b.arrays, kept)
         side, mem = begun(b, m, y)
         for _ in range(2):
-            e.projected(m, 0.0, y, side)
+            e.projected(m, t, y, side)
         rng = np.random.default_rng(7)
         if apart:
-            self.change(m, 0.0, y, side, apart * speeds, rng)
+            self.change(m, t, y, side, apart * speeds, rng)
         stops = sorted({-(-k * len(self.times) // parts) for k in range(1, parts + 1)})
-        t, at, fired = 0.0, 0, dict.fromkeys((v.name for v in self.s.events), 0)
+        at, fired = 0, dict.fromkeys((v.name for v in self.s.events), 0)
         deep = np.zeros(len(m.watch))
         h_max = self.s.end / 40
         pivot = least_pivot(m, y, side, mem)
@@ -790,22 +794,27 @@ def truth(scene: Scene, bound: float) -> Truth:
     return truth_at(scene, bound, *LADDER[-1])
 
 
-def truth_at(scene: Scene, bound: float, tight: float, loose: float) -> Truth:
-    """At the rows and, by what `bound` means in time, before and after each."""
+def truth_at(scene: Scene, bound: float, tight: float, loose: float, begin: Any = None) -> Truth:
+    """At the rows and, by what `bound` means in time, before and after each.
+
+    begin: time, state and stage where that is not the start.
+    """
     rows = np.arange(scene.rows + 1) * scene.end / scene.rows
-    other = Course(scene, rows, loose, turn=0.19)
+    first = 0.0 if begin is None else begin[0]
+    rows = rows[rows >= first]
+    other = Course(scene, rows, loose, turn=0.19, begin=begin)
     g = float(np.linalg.norm(scene.gravity))
     rough = Truth(rows, other.channels(), [], [], size=size(scene), mass=lightest(scene), gravity=g)
     top = scales(rough)
     dt = min(0.3 * scene.end / scene.rows, bound * min(scene.end, rough.size / top["speed"]))
     dt = max(dt, 1e-9 * scene.end)
     shifts = [sign * part * dt for part in PARTS for sign in (-1, 1)]
-    every = [np.clip(rows + x, 0, scene.end) for x in shifts]
+    every = [np.clip(rows + x, first, scene.end) for x in shifts]
     times = np.unique(np.concatenate([rows, *every]))
-    main = Course(scene, times, tight, room=ROOM)
+    main = Course(scene, times, tight, room=ROOM, begin=begin)
     apart = Course(
         scene, rows, loose, apart=APART, speeds=np.repeat([top["speed"], top["spin"]], 3),
-        room=ROOM,
+        room=ROOM, begin=begin,
     )  # fmt: skip
     all_of = main.channels()
     n = sum(len(part[2]) for part in main.parts)
@@ -816,7 +825,7 @@ def truth_at(scene: Scene, bound: float, tight: float, loose: float) -> Truth:
 
     kept = rows if main.ended is None else rows[rows <= main.ended]
     t = Truth(kept, picked(kept), [], main.grazing, main.ended, steps=main.steps)
-    t.about = [picked(np.clip(kept + x, 0, scene.end)) for x in shifts]
+    t.about = [picked(np.clip(kept + x, first, scene.end)) for x in shifts]
     t.size, t.mass, t.gravity, t.end = rough.size, rough.mass, g, scene.end
     t.smooth, t.beside = main.smooth(), apart.smooth
     t.top = scales(replace(t, channels=all_of))

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from .judge import RIGHT, TIMES, TOLD, UNJUDGED, WRONG, Verdict, judged, ran
-from .static_paths import FAMILIES
+from .phased import FAMILIES
 from .trial import cautious, made, true
 
 SEEDS = range(5)

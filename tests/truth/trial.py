@@ -26,9 +26,10 @@ from .judge import (
     rigid,
     stated,
 )
+from .phased import FAMILIES, PHASED, judged_in_parts
 from .reference import Truth, Unfit, growth_of_later, truth
 from .scene import Scene
-from .static_paths import FAMILIES, STATIC
+from .static_paths import STATIC
 
 
 def made(family: str, seed: int) -> Drawn:
@@ -85,6 +86,10 @@ def verdict(family: str, seed: int) -> Verdict:
         tight = ran(tighter(s).text()) if r.exit == 0 else r
         v.cpu = (time.process_time() - middle, middle - begun)
         return against(s, r, tight, v)
+    if drawn.by == PHASED:
+        v = judged_in_parts(drawn, r, v)
+        v.cpu = (time.process_time() - middle, middle - begun)
+        return v
     if drawn.by == STATIC:
         v = statics.judged(s, r, v)
         v.cpu = (time.process_time() - middle, middle - begun)

@@ -29,7 +29,7 @@ from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS, Event
 from trsim.scenario.methods import METHODS
-from trsim.scenario.phases import OfPhase, forces_in, path_of
+from trsim.scenario.phases import OfPhase, forces_in, is_static, path_of
 from trsim.statuses import Ended
 from trsim.units import fits
 
@@ -121,6 +121,7 @@ class Switches:
     events: tuple[UserEvent, ...] = ()
     jumps: int = -1  # entry of z with the work of the events
     phases: tuple[str, ...] = ()  # their names
+    static: tuple[bool, ...] = ()  # which of them are static paths
     silent: Mapping[str, tuple[int, ...]] = field(default_factory=dict)  # columns of forces
 
     @property
@@ -187,7 +188,8 @@ def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switche
     motions = {name: tuple(found) for name, found in of.motions.items()}
     jumps = at.state(0.0) if events else -1
     phases = tuple(phase.name or f"phase_{k + 1}" for k, phase in enumerate(scenario.phases))
-    return Switches(tuple(of.names), motions, (*events, *limited), jumps, phases)
+    static = tuple(is_static(scenario, k) for k in range(len(phases)))
+    return Switches(tuple(of.names), motions, (*events, *limited), jumps, phases, static)
 
 
 def limits(instances: Iterable[Instance]) -> tuple[UserEvent, ...]:
@@ -267,7 +269,10 @@ class _Packing:
             phases = self.scenario.phases
             own = [phase.name or f"phase_{k + 1}" for k, phase in enumerate(phases)]
             turned += [self.switch(*PHASE, leads)] if leads < len(own) else []
-            begins = f"phase {own[leads]} begins" if leads < len(own) else ""
+            begins = ""
+            if leads < len(own):
+                static = "static " if is_static(self.scenario, leads) else ""
+                begins = f"{static}phase {own[leads]} begins"
             said = ": ".join(filter(None, (begins, said)))
             self.begun[leads] = (tuple(turned), said)
         return tuple(turned), said

@@ -157,8 +157,7 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     from trsim.solve.diagnose.modes import modes
     from trsim.solve.diagnose.scales import scales
     from trsim.solve.path.begin import check as check_path
-    from trsim.solve.simulate import check_step
-    from trsim.solve.start.consistent import start
+    from trsim.solve.simulate import begun_by, check_step
     from trsim.solve.start.driven import check_driven
     from trsim.solve.start.projected import projected
 
@@ -168,9 +167,9 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
         scenario = scenario.model_copy(update={"solver": solver})
     if METHODS[scenario.solver.method].driven:
         check_driven(scenario, mechanism)
-    if METHODS[scenario.solver.method].rests:
+    if METHODS[scenario.solver.method].rests or any(mechanism.stages.switches.static):
         check_path(scenario, mechanism)
-    at = start(scenario, mechanism, located=True)
+    at = begun_by(scenario, mechanism, True)
     of_start = scales(scenario, mechanism, at)
     check_step(scenario, of_start)
     found = asdict(of_start)

@@ -18,6 +18,7 @@ from pydantic import create_model, model_validator
 from trsim.errors import ScenarioError, described, known
 from trsim.fields import EMPTY, Flag, Spec, Unit
 from trsim.scenario.event import WATCHED, Actions, Crosses, Ending, Event, Motion
+from trsim.scenario.methods import METHODS
 
 EXAMPLE = """
 bodies:
@@ -75,6 +76,8 @@ class Phase(_lasting("for  time after its begin at which it ends", None)):  # ty
     """A load step: all it says happens as it begins, and lasts until other phases say otherwise.
 
     name     what it is called; phase_1, phase_2 and so on unless given
+    static   a static path, which passes from balance to balance as the drives go on; without it
+             the phase is one of motion
     drive    motions that drives begin; in them `t` is the time since the phase began
     release  ideal joints that come apart, and drives that let go
     lock     joints whose coordinate is held
@@ -92,6 +95,7 @@ class Phase(_lasting("for  time after its begin at which it ends", None)):  # ty
 
     type: ClassVar[str] = "phase"
     name: str = ""
+    static: Flag = False
     drive: dict[str, Motion] = EMPTY
     release: tuple[str, ...] = ()
     lock: tuple[str, ...] = ()
@@ -211,10 +215,18 @@ def check(scenario: Any, k: int) -> None:
     if not last and not phase.is_ended:
         what = "nothing ends this phase, and another one is to follow"
         raise ScenarioError(what, "give `until`, `for` or both", ("phases", k))
+    if phase.stall is not None and is_static(scenario, k):
+        what = "a static phase rests at each place, and knows no `stall`"
+        raise ScenarioError(what, "end it with `until` or `for`", ("phases", k, "stall"))
     if phase.end is not None and not (last and phase.is_ended):
         what = "`end` is the status of a run that ends with its last phase"
         hint = "leave it out" if not last else "give `until` or `for`, which ends the phase"
         raise ScenarioError(what, hint, ("phases", k, "end"))
+
+
+def is_static(scenario: Any, k: int) -> bool:
+    """Whether phase k is a static path: it says so, or all phases are."""
+    return bool(scenario.phases[k].static) or METHODS[scenario.solver.method].rests
 
 
 def begun(scenario: Any, k: int) -> Actions:

@@ -41,11 +41,12 @@ from trsim.solve.outcome import (
     statistics,
     untrue,
 )
-from trsim.solve.start.consistent import start
+from trsim.solve.start.consistent import Start, start
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
 
+UNUSED = ("dop853",)  # of a run without motion: it only lends its sizes
 SPARSE_FROM = 30  # velocities: ten planar bodies, five spatial ones; measured on stiff chains
 # what the multipliers of a tighter one are rounded to looks like its error, as it does in the first
 # moments of a hard touch, whose error is judged by depths of nanometres
@@ -85,7 +86,7 @@ def simulate(
 
     Raises ModelError where there is no consistent start.
     """
-    if METHODS[scenario.solver.method].rests:
+    if METHODS[scenario.solver.method].rests and not mechanism.stages.switches.phases:
         from trsim.solve.path.follow import simulate as along_path
 
         return along_path(scenario, mechanism)
@@ -100,6 +101,8 @@ def simulate(
 def files(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     """The methods (solve/methods) that make the steps of a run; none for a method of scipy."""
     solver = scenario.solver
+    if METHODS[solver.method].rests:  # all phases are static: no method makes a step
+        return UNUSED
     known, formulation = METHODS[solver.method].files, solver.formulation or INDEX_1
     if solver.formulation is None and GGL in known:
         large, touches = mechanism.model.n_v >= SPARSE_FROM, len(mechanism.model.contact) > 0
@@ -141,10 +144,8 @@ def compiled(
         from trsim.solve.start.driven import check_driven
 
         check_driven(scenario, mechanism)
-    if checkpoint:
-        begun = begun_at(checkpoint, mechanism, scene(mechanism.model))
-    else:
-        begun = start(scenario, mechanism, located)
+    static = mechanism.stages.switches.static
+    begun = begun_by(scenario, mechanism, located, checkpoint)
     work, left_out = begun_with(mechanism, begun)
     spanned = int(np.ceil(setting.fixed_step / setting.every))
     if setting.fixed_step > 0.0 and not scenario.solver.force and not checkpoint:
@@ -173,7 +174,8 @@ def compiled(
         from trsim.solve.march.passes import note_passes
 
         called["passes"] = note_passes.address()
-    methods[0] = method_table(used[0], **called)
+    if not all(static) or not static:
+        methods[0] = method_table(used[0], **called)
     clock0 = time.process_time()
     if checkpoint:
         clock0 -= put_back(checkpoint, r, work)
@@ -185,6 +187,9 @@ def compiled(
         begin(work, r, b, setting)
         refuse_no_number(mechanism, b.rows[0, 1:])
         r.h = first_step(scenario, r)
+        if static and static[0]:  # its first row, and all that is told, is that of the path
+            r.rows = r.next_row = 0
+            r.peak[rec.PEAK_MAX], r.peak[rec.PEAK_MIN] = -1e300, 1e300
     if driven and not keep_side(work, r, b):
         from trsim.solve.diagnose.singular import singular_start
 
@@ -195,16 +200,27 @@ def compiled(
     bends = Bends(mechanism)
     bends.look(float(r.t), r.y)
     ended = None  # by a user event
+    if any(static):
+        from trsim.solve.path.phase import Walks
+
+        walks = Walks(scenario, mechanism, located)
+        if checkpoint:
+            walks.put_back(checkpoint)
     begins = bool(switches.phases) and not checkpoint
     if begins:
         r.watch[first_phase(switches.events), rec.JUST_NOW] = 1.0
     while True:
         most = min(visit, limit - int(r.steps))
-        reason = rec.ACT if begins else march(work, r, b, setting, methods, most)
+        if begins:
+            reason = rec.ACT
+        elif any(static) and walks.on_path(r):
+            reason, ended = yield from walks.walk(work, r, b)
+        else:
+            reason = march(work, r, b, setting, methods, most)
         begins = False
         examine(work, r, other_rows=reason == rec.ACT)
         recorded = jump = None
-        if reason == rec.ACT:
+        if reason == rec.ACT and ended is None:
             before, (work, recorded, ended, jump) = work, act(mechanism, work, r, b, setting)
             if work is not before:  # other equations
                 r.h = min(r.h, first_step(scenario, r))
@@ -228,7 +244,10 @@ def compiled(
             methods[:] = [method_table(method, **called) for method in used]
             clock0 = time.process_time() - cpu
         block = emptied(r, b, recorded, jump)
-        yield block._replace(state=state(r, work, begun, cpu)) if paused else block
+        if paused:
+            of_walks = walks.kept() if any(static) else {}
+            block = block._replace(state=state(r, work, begun, cpu) | of_walks)
+        yield block
         if not paused:
             break
         if r.steps >= limit:
@@ -240,8 +259,24 @@ def compiled(
     found = statistics(r, work, begun, cpu)
     if many := left(mechanism, r, ended is not None):
         found["phases_left"] = many
+    said: tuple[str, ...] = ()
+    if any(static):
+        said, found = walks.said, found | walks.numbers
     return Outcome(status, text, float(r.t), found,
-                   r.peak.T.copy(), r, begun, fired, bends.states)  # fmt: skip
+                   r.peak.T.copy(), r, begun, fired, bends.states, said)  # fmt: skip
+
+
+def begun_by(
+    scenario: Any, mechanism: Mechanism, located: bool, checkpoint: State | None = None
+) -> Start:
+    """The start: of a checkpoint, of a motion, or of a static phase."""
+    if checkpoint:
+        return begun_at(checkpoint, mechanism, scene(mechanism.model))
+    if (static := mechanism.stages.switches.static) and static[0]:
+        from trsim.solve.path.begin import begin as begin_path
+
+        return begin_path(scenario, mechanism)
+    return start(scenario, mechanism, located)
 
 
 def first_phase(events: Sequence[UserEvent]) -> int:

@@ -21,7 +21,8 @@ INSTEAD = "or let the motion be computed: leave `method` out"
 
 def check(scenario: Any, mechanism: Mechanism) -> None:
     """Refuse what has no static path.  Raises ScenarioError."""
-    method = scenario.solver.method
+    phased = any(mechanism.stages.switches.static)
+    method = "static phase" if phased else scenario.solver.method
     for instance in mechanism.instances:
         if instance.row.piston >= 0:
             raise ScenarioError(
@@ -31,7 +32,7 @@ def check(scenario: Any, mechanism: Mechanism) -> None:
             )
     for event in mechanism.stages.switches.events:
         names = mechanism.stages.switches.names
-        if any(names[n][0] != "drives" or to != LOOSE for n, to in event.turned):
+        if not phased and any(names[n][0] != "drives" or to != LOOSE for n, to in event.turned):
             raise ScenarioError(
                 f"{event.said}, and a {method} knows events that record, end a run or let a drive "
                 "go",

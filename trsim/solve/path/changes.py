@@ -50,7 +50,8 @@ class Looks:
         self.slow = AT_REST * w.size / end
         self.events = equations.mechanism.stages.switches.events
         self.side = dict.fromkeys(range(len(self.events)), 0.0)
-        self.left = [event.most for event in self.events]
+        self.left = [float(event.most) for event in self.events]
+        self.value = [event.value for event in self.events]
         self.columns = {c.name: c.start for c in equations.mechanism.columns}
         self.places = watched_places(w, bent_tables(equations.mechanism))
         self.sense = 0.0
@@ -87,16 +88,16 @@ class Looks:
         w, found = self.work, []
         poses(w, self.moving(place))
         gaps(w, place.t)
-        for event in self.events:
+        for event, value in zip(self.events, self.value, strict=True):
             if event.kind == CHANNEL and out is not None:
-                found.append((float(out[column_of(self.columns, event.when)]) - event.value, inf))
+                found.append((float(out[column_of(self.columns, event.when)]) - value, inf))
             elif event.entry <= LIMITS:
                 found.append((float(w.gap[LIMITS - event.entry, 0]), inf))
             elif event.entry == TIME:
-                found.append((place.t - event.value, inf))
+                found.append((place.t - value, inf))
             else:
                 x, rate = w.S[event.entry].tolist()
-                found.append((x - event.value, rate))
+                found.append((x - value, rate))
         return found
 
     def hold(self, t: float, which: int) -> None:
@@ -130,6 +131,10 @@ class Looks:
             self.closed[e] = g > 0.0
         self.eq.set_phases(self.closed)
         self.hold_all(place)
+        self.sides(place, out)
+
+    def sides(self, place: Place, out: Array | None) -> None:
+        """Take the sides on which what user events watch is."""
         for k, (x, _) in enumerate(self.values(place, out)):
             self.side[k] = float(np.sign(x))
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.switches import TIME
 from trsim.elements.scene import scene
 from trsim.errors import ModelError
 from trsim.solve.march import record as rec
@@ -52,7 +53,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Block, None, Outc
     """As solve/simulate.py's: the path from t = 0 to the end, or to where it ends."""
     check(scenario, mechanism)
     clock = time.process_time()
-    path = Path(scenario, mechanism)
+    path = Path(scenario, mechanism, begin(scenario, mechanism))
     yield from path.run()
     return path.outcome(time.process_time() - clock)
 
@@ -60,12 +61,13 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Block, None, Outc
 class Path:
     """A path as far as it was followed."""
 
-    def __init__(self, scenario: Any, mechanism: Mechanism) -> None:
-        self.scenario, self.mechanism = scenario, mechanism
+    def __init__(self, scenario: Any, mechanism: Mechanism, begun: Any, t0: float = 0.0) -> None:
+        """begun: y, mem and branch at t0, see Start."""
+        self.scenario, self.mechanism, self.t0 = scenario, mechanism, t0
         self.setting = settings(scenario, mechanism)
         self.end, self.every = float(self.setting.t_end), float(self.setting.every)
-        self.begun = begin(scenario, mechanism)
-        self.eq = Equations(mechanism, self.begun)
+        self.begun = begun
+        self.eq = Equations(mechanism, begun)
         self.eq.small = 1e-6 * min(self.every, self.end)
         self.held = Held(mechanism)
         self.looks = Looks(self.eq, self.end)
@@ -105,6 +107,8 @@ class Path:
                 again = again + 1 if place.t - last <= SAME * self.end else 0
                 last = place.t
                 place = self.beyond(place, changes)
+                if self.log.due:
+                    break
                 if place is None or again > AGAIN or self.log.reason:
                     self.stop(trial, changes)
                     break
@@ -120,29 +124,33 @@ class Path:
         poses(eq.work, y)
         self.looks.closed = {e: False for e in self.looks.closed}
         none = np.zeros((0, 0))
-        start = Place(0.0, y, np.zeros(eq.m), none, none, np.zeros(eq.n), np.zeros(eq.m))
+        start = Place(self.t0, y, np.zeros(eq.m), none, none, np.zeros(eq.n), np.zeros(eq.m))
         self.looks.take(start, None)
-        found = eq.solved(0.0, y, eq.multipliers(0.0, y), None)
-        place = eq.place(0.0, *found) if found is not None else None
+        found = eq.solved(self.t0, y, eq.multipliers(self.t0, y), None)
+        place = eq.place(self.t0, *found) if found is not None else None
         if place is None:
-            raise ModelError(
-                "no equilibrium at the start that a path could begin at",
-                "does something hold every load, and every body?  `trsim statics` tells more",
-                ("solver", "method"),
-            )
+            raise self.nowhere()
         place = self.directed(place)
         self.looks.hold_all(place)
         if not eq.rubs:  # on the pieces ahead
-            place = eq.place(0.0, place.y, place.lam) or place
+            place = eq.place(self.t0, place.y, place.lam) or place
         self.looks.directions(place)
         out = self.results.out(place, place.v * 0.0) if self.hears else None
-        for k, (x, _) in enumerate(self.looks.values(place, out)):
-            self.looks.side[k] = float(np.sign(x))
+        self.looks.sides(place, out)
         self.judge(place)
         self.log.astray(place, self.scenario.initial.values)
         if self.looks.sense == -1.0:
-            self.log.falls.append((0.0, f"the equilibrium is unstable{self.log.where(place)}"))
+            told = f"the equilibrium is unstable{self.log.where(place)}"
+            self.log.falls.append((self.t0, told))
         return place
+
+    def nowhere(self) -> ModelError:
+        """That there is no balance to begin with."""
+        return ModelError(
+            "no equilibrium at the start that a path could begin at",
+            "does something hold every load, and every body?  `trsim statics` tells more",
+            ("solver", "method"),
+        )
 
     def directed(self, place: Place) -> Place:
         """The start with friction against the way it is going to go."""
@@ -151,7 +159,8 @@ class Path:
             return place
         first, h = slice(eq.work.n_q, eq.work.n_q + eq.n), FIRST * self.every
         while True:
-            found = eq.solved(h, eq.at_time(place.y, 0.0, h), place.lam, None)
+            there = eq.at_time(place.y, self.t0, self.t0 + h)
+            found = eq.solved(self.t0 + h, there, place.lam, None)
             if found is None:
                 return place
             ahead = found[0].copy()
@@ -162,10 +171,10 @@ class Path:
         y = place.y.copy()
         y[first] = ahead[first]
         eq.frozen = True
-        again = eq.solved(0.0, y, found[1], None)
-        there = eq.place(0.0, *again) if again is not None else None
+        again = eq.solved(self.t0, y, found[1], None)
+        at_start = eq.place(self.t0, *again) if again is not None else None
         eq.frozen = False
-        return there or place
+        return at_start or place
 
     def until(self, t: float, h: float) -> float:
         """Where a step of h ends, at the latest."""
@@ -174,9 +183,9 @@ class Path:
         work = self.eq.work
         if len(work.feature):
             ends = min(ends, float(next_time(work, t, self.end)))
-        for event in self.looks.events:
-            if event.entry == -1 and event.kind == "time" and event.value > t:
-                ends = min(ends, event.value)
+        for event, value in zip(self.looks.events, self.looks.value, strict=True):
+            if event.entry == TIME and event.kind == "time" and value > t:
+                ends = min(ends, value)
         return ends if t + 1.001 * h >= ends else t + h
 
     def reached(self, place: Place, t: float, within: float = 0.0) -> Place | None:
@@ -248,7 +257,7 @@ class Path:
         eq, looks = self.eq, self.looks
         for change in changes:
             self.log.note(place, change)
-        if self.log.reason:
+        if self.log.reason or self.log.due:
             return place
         eq.set_phases(looks.closed)
         if self.log.letting_go:

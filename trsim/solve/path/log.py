@@ -34,6 +34,8 @@ class Log:
         self.reason = ""
         self.falls: list[tuple[float, str]] = []
         self.letting_go: list[UserEvent] = []  # events that let drives go at this place
+        self.hands_over = False  # what user events do, see phase.py
+        self.due: list[tuple[int, float]] = []  # those that happen here, with the rate then
         self.fired = {event.name: 0 for event in looks.events if event.kind != "limit"}
 
     def note(self, place: Place, change: Change) -> None:
@@ -64,6 +66,9 @@ class Log:
         if event.direction not in (0, change.to):
             return 0.0, -1
         looks.left[k] -= 1
+        if self.hands_over:
+            self.due.append((k, change.rate))
+            return 0.0, -1
         if event.name in self.fired:
             self.fired[event.name] += 1
         if event.turned:

@@ -18,7 +18,15 @@ from trsim.assemble.dense import least_squares
 from trsim.assemble.equations import largest_wrench, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
-from trsim.elements.contract import CONTACT, FIRST_ROW, FLIGHT, IMPACT_SPEED, PHASE, Load
+from trsim.elements.contract import (
+    CONTACT,
+    FIRST_ROW,
+    FLIGHT,
+    IMPACT_SPEED,
+    PHASE,
+    Load,
+    Memory,
+)
 from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Scene, scene
 from trsim.laws.friction import CODES
@@ -125,25 +133,27 @@ class Equations:
         self.turning = rubbed or (w.d == 6 and len(self.surfaces) > 0)
         self.stiffest = 0.0  # N*m, of the matrix made last
         self.frozen = False  # velocities of a state are as they are
-        self.states = self.driven()
+        self.states = self.driven()  # see at_time
         poses(w, begun.y)
         self.load = float(largest_wrench(w, 0.0)) or 1.0  # the largest force met
 
-    def driven(self) -> list[tuple[int, int]]:
-        """States that hold the place of a drive with a velocity, and its function."""
+    def driven(self) -> list[tuple[int, int, float]]:
+        """States that hold the place of a drive with a velocity, its function, when that began."""
         found = []
-        for instance in self.mechanism.instances:
+        for e, instance in enumerate(self.mechanism.instances):
             if instance.section == "drives":
-                own = AnyDrive.of(instance.row)
+                own = AnyDrive(self.work, e)
                 if own.state >= 0:
-                    found.append((int(own.state), int(own.motion)))
+                    since = float(Memory(self.work, e).since)
+                    found.append((int(own.state), int(own.motion), since))
         return found
 
     def at_time(self, y: Array, t0: float, t: float) -> Array:
         """y with the places of drives that a velocity prescribes as they are at t."""
         y, first = y.copy(), self.work.n_q + self.work.n_v
-        for state, motion in self.states:
-            rates = [rates_at(self.work.tab, motion, t0 + x * (t - t0))[0] for x in NODE]
+        for state, motion, since in self.states:
+            times = t0 - since + NODE * (t - t0)
+            rates = [rates_at(self.work.tab, motion, float(x))[0] for x in times]
             y[first + state] += (t - t0) * float(np.dot(WEIGHT, rates))
         return y
 

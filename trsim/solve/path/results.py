@@ -52,6 +52,7 @@ class Results:
         self.peak = np.zeros((rec.N_PEAK, w.n_out + squares))
         self.peak[rec.PEAK_MAX], self.peak[rec.PEAK_MIN] = -1e300, 1e300
         self.rows: list[Array] = []
+        self.now = np.zeros(w.n_out)  # the channels of the place that was kept last
         self.steps: list[Array] = []
         self.recorded: list[Array] = []
         self.last: Place | None = None
@@ -59,6 +60,7 @@ class Results:
         self.turned = self.jumped = False
         self.residual = 0.0
         self.zero = 0.0  # J, the energy at the start
+        self.begun = False  # whether it is known
         self.drives = [one for one in self.rigid_drives() if one[1] >= 0]
         # of every drive: what inertia adds, what dampers do, its force; each with its time
         self.most = np.zeros((len(self.drives), 3, 2))
@@ -134,11 +136,11 @@ class Results:
     def keep(self, place: Place, a: Array, row: bool) -> Array:
         """Take a place that is known with its accelerations: works, peaks, steps, inertia."""
         self.worked(place)
-        row = row or not self.rows
+        row = row or not self.begun
         out = self.out(place, a)
         energies = out[self.w.column_energy :]
-        if not self.rows:
-            self.zero = energies[-1]
+        if not self.begun:
+            self.zero, self.begun = energies[-1], True
         if self.jumped:  # what a jump loses is no error of the book
             self.zero += energies[-1] - self.zero - self.residual
         energies[-1] -= self.zero
@@ -150,6 +152,7 @@ class Results:
             values = np.array([*out, *squares])
             further = (x * values > x * self.peak[k]) & (row | ~self.rates)
             self.peak[k, further], self.peak[k + 1, further] = values[further], place.t
+        self.now = out
         if row:
             self.rows.append(np.concatenate([[place.t], out]))
         return out
