@@ -27,7 +27,7 @@ from .judge import (
 from .reference import LADDER, Stage, Unfit, truth_at
 from .scene import Scene, Torsion
 from .static_paths import FAMILIES as FAMILIES
-from .static_paths import static_path
+from .static_paths import static_cam, static_path
 from .statics import CREEP, Balance
 from .statics import judged as judged_path
 
@@ -39,8 +39,10 @@ STEP = 1e-4  # s, of differences
 @family
 def phases(rng: Any) -> Drawn:
     """A chain brought into place from balance to balance, then let go or driven on."""
-    drawn = static_path(rng)
+    drawn = pick(rng, static_path, static_path, static_cam)(rng)
     s = drawn.scene
+    for law in s.laws:
+        law.friction = "none"
     s.method, s.tolerance = pick(rng, "auto", "dop853", "radau"), 10.0 ** -between(rng, 5, 9)
     s.rows = 24
     first = s.end * between(rng, 0.2, 0.7)
@@ -58,12 +60,11 @@ def phases(rng: Any) -> Drawn:
     return drawn
 
 
-def part(r: Ran, rows: Any) -> Ran:
-    """What a run gave at some of its rows."""
-    t = r.t[rows]
-    low, high = (t[0], t[-1]) if len(t) else (0.0, 0.0)
-    events = r.events[(r.events[:, 0] >= low) & (r.events[:, 0] <= high)]
-    return replace(r, t=t, rows=r.rows[rows], events=events)
+def part(r: Ran, begin: float, end: float) -> Ran:
+    """What a run gave behind a time, up to another one."""
+    rows = (r.t > begin) & (r.t <= end)
+    events = r.events[(r.events[:, 0] > begin) & (r.events[:, 0] <= end)]
+    return replace(r, t=r.t[rows], rows=r.rows[rows], events=events)
 
 
 def begun(s: Scene, r: Ran, t: float, lets_go: bool) -> tuple[float, np.ndarray, Stage]:
@@ -89,8 +90,9 @@ def judged_in_parts(drawn: Drawn, r: Ran, v: Verdict) -> Verdict:
     s, (first, lets_go) = drawn.scene, drawn.begins
     if r.exit:
         return judged_path(s, r, v)
-    times = r.t / s.unit((0, 0, 1))
-    v = judged_path(s, part(r, times <= first), v)
+    T = s.unit((0, 0, 1))
+    times = r.t / T
+    v = judged_path(s, part(r, -1.0, first * T), v)
     if v.verdict != RIGHT or times[-1] <= first or v.reach < 1.0:
         return v
     try:
@@ -106,7 +108,7 @@ def judged_in_parts(drawn: Drawn, r: Ran, v: Verdict) -> Verdict:
             row = int(np.flatnonzero(times > first)[0])
             c.values += r[name][row] / s.unit(c.dims) - c.values[0]  # type: ignore[arg-type]
     moving = Verdict(v.family, v.seed, RIGHT, v.method, v.tolerance, by=v.by)
-    moving = judged(s, t, part(r, times > first), moving)
+    moving = judged(s, t, part(r, first * T, np.inf), moving)
     if moving.verdict == UNJUDGED or (moving.verdict == RIGHT and moving.ratio <= v.ratio):
         return v
     if moving.verdict == WRONG:
