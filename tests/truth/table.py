@@ -26,8 +26,9 @@ products of exponentials of screws). The families
 `static_path` and `static_cam` are judged by places at which no joint begins to move
 (tests/truth/statics.py), `phases` by both: a static phase, and the motion that follows it. Flexible
 bars are judged by a tight run of another method. The truth is found in units near one and in the
-axes of the drawing; what trsim reads has lengths, masses and times scaled by 1e-3 to 1e3 and is turned to any direction. Methods, tolerances (1e-2 to
-1e-10), numbers of rows and speeds are drawn too.
+axes of the drawing; what trsim reads has lengths, masses and times scaled by 1e-3 to
+1e3 and is turned to any direction. Methods, tolerances (1e-2 to 1e-10), numbers of rows and speeds
+are drawn too.
 
 Wrong: ended `done` with a place, turn, velocity, acceleration, reaction, drive torque, load or work
 off by more than max(100 tolerance, 10 stated error) of the largest of its kind in the scene
