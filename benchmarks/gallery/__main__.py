@@ -1,7 +1,7 @@
-"""`python -m benchmarks.gallery [TEMPLATE...]`: pictures into docs/gallery, and docs/gallery.md.
+"""`python -m benchmarks.gallery [TEMPLATE...]`: docs/gallery.md, and all pictures that are asked for.
 
 A picture is the mechanism at one moment, or several, beside the curves of the first `--plot` that
-the template itself tells one to try.
+the template itself tells one to try.  `first_mechanism` stands for the pictures of that page.
 """
 
 import io
@@ -18,7 +18,8 @@ from PIL import Image
 from pygltflib import GLTF2
 
 from benchmarks.gallery import still
-from benchmarks.gallery.page import PAGE, PICTURES, page
+from benchmarks.gallery.page import DOCS, PAGE, PICTURES, page
+from benchmarks.gallery.tutorial import follow, pictures
 from trsim.analyse.plotted import plotted, rows
 from trsim.cli import main
 from trsim.report import style
@@ -28,6 +29,7 @@ from trsim.report.marks import spaced
 from trsim.scenario.shipped import TEMPLATES, Template, template
 from trsim.store.read import read
 
+FIRST = "first_mechanism"
 SIZE = (420, 330)  # pixels of the drawing
 GHOST = 0.22  # how much of an earlier moment is seen
 COLOURS = 128  # of a picture: it stays small
@@ -166,10 +168,31 @@ def make(name: str) -> None:
     small(composed(result, SCENES[name], words_of(found)), target)
 
 
+def tutorial() -> None:
+    """The pictures of docs/first_mechanism.md: figures that its commands draw, and the wiper."""
+    text = (DOCS / f"{FIRST}.md").read_text(encoding="utf-8")
+    for _ in follow(text, typed):
+        pass
+    for name in pictures(text, FIRST):
+        if name == "wiper.png":
+            made = composed(Path("runs/wiper.h5"), Scene((0.125, 0.346, 0.0), "tip"), "swing : turn")
+        else:
+            made = Image.open(Path("figures") / name)
+        small(made, DOCS / FIRST / name)
+
+
+def typed(words: list[str]) -> tuple[int, str]:
+    """The exit code of a command line; its words are shown as they are said."""
+    try:
+        main(words)
+    except SystemExit as ended:
+        return int(ended.code or 0), ""
+
+
 if __name__ == "__main__":
-    asked = sys.argv[1:] or list(TEMPLATES)
+    asked = sys.argv[1:] or [*TEMPLATES, FIRST]
     with tempfile.TemporaryDirectory() as there:
         os.chdir(there)
         for name in asked:
-            make(name)
+            tutorial() if name == FIRST else make(name)
     PAGE.write_text(page(), encoding="utf-8", newline="\n")
