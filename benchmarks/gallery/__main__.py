@@ -175,7 +175,9 @@ def tutorial() -> None:
         pass
     for name in pictures(text, FIRST):
         if name == "wiper.png":
-            made = composed(Path("runs/wiper.h5"), Scene((0.125, 0.346, 0.0), "tip"), "swing : turn")
+            made = composed(
+                Path("runs/wiper.h5"), Scene((0.125, 0.346, 0.0), "tip"), "swing : turn"
+            )
         else:
             made = Image.open(Path("figures") / name)
         small(made, DOCS / FIRST / name)

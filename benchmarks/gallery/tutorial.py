@@ -1,9 +1,9 @@
 """A page that one follows: its files are written, its commands typed, in their order.
 
-    ```sh                  commands; `sh by-hand` are not typed, `sh fails=3` end with that code
-    ```yaml file=NAME      a whole file
-    ```yaml fragment=NAME before=KEY    lines that go into it, in front of one of its keys
-    ```text                lines that were said by the commands before
+```sh                  commands; `sh by-hand` are not typed, `sh fails=3` end with that code
+```yaml file=NAME      a whole file
+```yaml fragment=NAME before=KEY    lines that go into it, in front of one of its keys
+```text                lines that were said by the commands before
 """
 
 import re
@@ -63,7 +63,9 @@ def follow(page: str, typed: Callable[[list[str]], tuple[int, str]]) -> Iterator
 
 
 def write(step: Step) -> None:
-    """A file, or lines in one."""
+    """A file, or lines in one; what is only shown has no marks."""
+    if not step.marks:
+        return
     if "file" in step.marks:
         Path(step.marks["file"]).write_text(step.text, encoding="utf-8")
         return

@@ -15,9 +15,18 @@ if TYPE_CHECKING:
 DEFAULT = "pendulum"
 
 
+def names(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:
+    """The templates whose names begin so, for a shell that completes them."""
+    from trsim.scenario.shipped import TEMPLATES
+
+    return [name for name in TEMPLATES if name.startswith(begun)]
+
+
 @click.command("init")
-@click.argument("name", required=False, type=NAMED)
-@click.option("--template", "word", metavar="NAME", help="Which one: see --list.")
+@click.argument("name", required=False, type=NAMED, shell_complete=names)
+@click.option(
+    "--template", "word", metavar="NAME", shell_complete=names, help="Which one: see --list."
+)
 @click.option("--list", "listed", is_flag=True, help="Say which templates there are.")
 @click.option("--force", is_flag=True, help="Write over files that are there.")
 @framed
