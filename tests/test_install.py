@@ -74,7 +74,7 @@ def test_the_container_file():
 
 def completed(*words):
     """What the shell is told of the last of these words."""
-    return subprocess.run(  # noqa: S603
+    return subprocess.run(
         [sys.executable, "-c", "from trsim.cli import main; main()"],
         capture_output=True, text=True, check=True,
         env={**os.environ, "PYTHONPATH": str(ROOT), "_TRSIM_COMPLETE": "bash_complete",
@@ -94,7 +94,7 @@ def test_completion():
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_lines_of_the_shells(shell):
     assert f"_TRSIM_COMPLETE={shell}_source trsim" in TEXT
-    out = subprocess.run(  # noqa: S603
+    out = subprocess.run(
         [sys.executable, "-c", "from trsim.cli import main; main([])"], capture_output=True,
         text=True, env={**os.environ, "PYTHONPATH": str(ROOT),
                         "_TRSIM_COMPLETE": f"{shell}_source"},

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.gallery [TEMPLATE...]`: docs/gallery.md, and all pictures that are asked for.
+"""`python -m benchmarks.gallery [TEMPLATE...]`: docs/gallery.md, and the pictures asked for.
 
 A picture is the mechanism at one moment, or several, beside the curves of the first `--plot` that
 the template itself tells one to try.  `first_mechanism` stands for the pictures of that page.
