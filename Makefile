@@ -5,7 +5,7 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo paper door tolerances test release-check coverage portable lint bench stress truth mutants clean
+.PHONY: demo paper door tolerances gallery test release-check coverage portable lint bench stress truth mutants clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -29,6 +29,10 @@ tolerances: .venv/installed
 	$(BIN)/trsim report runs/tolerances --sobol peak:B.contact_force \
 	  --sobol "peak:A.contact_force@0.29..0.5" --sobol "peak:actuator.force@0.5..1" \
 	  --sobol "fluctuation:door_angle.rate@0.31..0.98"
+
+# pictures and page of docs/gallery.md, and the pictures of docs/first_mechanism.md
+gallery: .venv/developer
+	$(BIN)/python -m benchmarks.gallery
 
 test: .venv/developer lint
 	$(PYTEST)

@@ -30,6 +30,7 @@ def shown(make) -> str:
     "text, words",
     [
         ("speed*2", ["no parameter named 'speed'", "Known: t."]),
+        ("10*deg*t", ["no parameter named 'deg'", "is a unit", "{x: 10 deg}"]),
         ("sin(90 deg)", ["A unit cannot stand inside an expression", "{x: 90 deg}"]),
         ("2*3 mm/s", ["A unit cannot stand inside an expression", "{x: 3 mm/s}"]),
         ("010", ["a number does not begin with 0", "drop the zero"]),

@@ -42,6 +42,18 @@ def test_silent():
     assert found() == ()
 
 
+@pytest.mark.parametrize("metres, told", [("0.16, length: 0.04", False), ("160, length: 40", True)])
+def test_a_heap_on_a_drum(metres, told):
+    """What follows from a shape may be wide around its joint, but less than a wrong unit is."""
+    notes = lint(
+        loads(f"""
+bodies: {{heap: {{mass: 4 kg, shape: [{{cylinder: {metres}, at: [0.01, 0, 0]}}]}}}}
+joints: {{axle: {{type: revolute, bodies: [ground, heap], at: [0, 0]}}}}
+""")
+    )
+    assert any("radius of gyration" in note for note in notes) == told
+
+
 @pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.yaml")), ids=lambda p: p.stem)
 def test_silent_on_the_repository(path):
     notes = lint(load(path))

@@ -13,6 +13,7 @@ from .test_circles import ROOT, imported, modules
 AT_HOME = ("trsim.elements", "trsim.studies")  # a study is run of what anybody could write
 # keys of elements that are words of something else as well, where they stand alone in a string
 WORDS = {
+    "cam": "a scenario to begin with",
     "drive": "an entry of `drives`, in messages",
     "distance": "a kind of what is watched",
     "point": "a key of what is given by one, in messages and in pictures",

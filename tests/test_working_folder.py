@@ -71,6 +71,7 @@ def ended(folder, command, *arguments, **environment):
 
 
 COMMANDS = (
+    ("init", "pendulum", "--force"),
     ("check", "crank.yaml"),
     ("run", "crank.yaml", "-o", "run.h5"),
     ("run", "crank.yaml", "-o", "dead.h5", "--resume", "--set", *LONGER),

@@ -6,7 +6,7 @@ from typing import Any
 
 from trsim import expressions
 from trsim.errors import ScenarioError, described, known
-from trsim.units import check_dimension, quantity, unit, units_hint
+from trsim.units import BASE, DERIVED, check_dimension, quantity, unit, units_hint
 
 LARGEST = 1e50  # its fourth power is still a number
 
@@ -70,6 +70,16 @@ def number(value: Any, units: tuple[str, ...] = ("-",), parameters: Any = None) 
     return result
 
 
+def unit_meant(name: str) -> str:
+    """What to do where a name of an expression is that of a unit; else nothing."""
+    if name not in {**BASE, **DERIVED}:
+        return ""
+    return (
+        f"'{name}' is a unit; expressions compute in SI. A number with its unit may be a "
+        f"parameter: `parameters: {{x: 10 {name}}}`, and x here."
+    )
+
+
 def _of_parameters(text: str, units: tuple[str, ...], parameters: Any) -> float:
     try:
         node = expressions.parse(text)
@@ -80,6 +90,7 @@ def _of_parameters(text: str, units: tuple[str, ...], parameters: Any) -> float:
             if name == "t":
                 raise ScenarioError("this number cannot depend on t", units_hint(units))
             hint = known(name, parameters) if parameters else units_hint(units)
+            hint = "  ".join(filter(None, [hint, unit_meant(name)]))
             raise ScenarioError(f"no parameter named {described(name)}", hint)
     alone = written(text, parameters)
     if alone and alone[1]:

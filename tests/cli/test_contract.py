@@ -32,6 +32,7 @@ from trsim.sweep.plan import plan
 
 VARIED = ("--set", "solver.tolerance=[1e-6]", "-o", "sweep", "-j", "1", "--retries", "0")
 GOOD = {
+    "init": ("pendulum",),
     "run": ("crank.yaml", "--certify"),
     "sweep": ("crank.yaml", *VARIED),
     "status": ("sweep",),
@@ -49,6 +50,7 @@ GOOD = {
     ),
 }
 SEAMS = {  # what a command calls to do its work
+    "init": "trsim.cli.init.write",
     "run": "trsim.cli.run.one",
     "sweep": "trsim.sweep.go.go",
     "status": "trsim.sweep.study.study",
@@ -63,6 +65,7 @@ SEAMS = {  # what a command calls to do its work
     "bench": "trsim.cli.bench.one",
 }
 USAGE = {  # beside wrong options
+    "init": ("pendlum",),
     "run": ("crank.yaml", "-o", "crank.yaml"),
     "check": ("crank.yaml", "--set", "nonsense"),
     "statics": ("crank.yaml", "-o", "crank.yaml"),
@@ -74,6 +77,7 @@ USAGE = {  # beside wrong options
     "bench": ("crank.yaml", "--methods", "dop583"),
 }
 NO_FILE = {
+    "init": ("crank.yaml/x",),
     "run": ("crank.yaml", "-o", "crank.yaml/x.h5"),
     "check": ("none.yaml",),
     "statics": ("none.yaml",),

@@ -243,6 +243,17 @@ def test_a_foreign_index(copy, scenario):
         made(scenario, copy)
 
 
+def test_a_folder_with_figures_of_a_run(scenario, tmp_path):
+    """What `report` of a run makes has the name that a sweep of its scenario has by itself."""
+    folder = tmp_path / "play_0.3mm"
+    folder.mkdir()
+    (folder / "x.png").write_bytes(b"")
+    (tmp_path / "play_0.3mm.h5").write_bytes(b"")
+    with pytest.raises(UsageError) as caught:
+        made(scenario, folder)
+    assert "figures of" in caught.value.hint and "play_0.3mm.h5" in caught.value.hint
+
+
 def test_folders_of_others(scenario, tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(UsageError, match="of other files"):

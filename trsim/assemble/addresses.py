@@ -16,6 +16,7 @@ from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names, rebuilt
 from trsim.laws import functions
 from trsim.laws.waves import waves
+from trsim.numbers import unit_meant
 from trsim.scenario.load import unit_of
 from trsim.units import fits
 from trsim.varying import RATE
@@ -252,9 +253,9 @@ class Addresses(Places):
         """Entry of S of a sensor, or of the rate of one."""
         own = name.removesuffix(RATE)
         if time_only and own not in self.scenario.sensors:
-            raise ScenarioError(
-                f"no parameter named '{name}'", known(name, [*self.scenario.parameters, "t"]), path
-            )
+            hint = known(name, [*self.scenario.parameters, "t"])
+            hint = "  ".join(filter(None, [hint, unit_meant(name)]))
+            raise ScenarioError(f"no parameter named '{name}'", hint, path)
         if time_only:
             raise ScenarioError(
                 f"'{name}' cannot stand here: a drive depends on t only",
@@ -270,11 +271,9 @@ class Addresses(Places):
                 path,
             )
         if own not in self.scenario.sensors:
-            raise ScenarioError(
-                f"no parameter or sensor named '{name}'",
-                known(name, [*self.scenario.sensors, *self.scenario.parameters, "t"]),
-                path,
-            )
+            hint = known(name, [*self.scenario.sensors, *self.scenario.parameters, "t"])
+            hint = "  ".join(filter(None, [hint, unit_meant(name)]))
+            raise ScenarioError(f"no parameter or sensor named '{name}'", hint, path)
         self.check_early(own, path)
         return self.sensor(name) if own == name else self.rate_of_sensor(own, path)
 

@@ -19,8 +19,8 @@ gc.set_threshold(50_000)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # each a module of this package
-COMMANDS = ("run", "sweep", "status", "report", "check", "statics", "show", "export", "recover",
-            "explain",
+COMMANDS = ("init", "run", "sweep", "status", "report", "check", "statics", "show", "export",
+            "recover", "explain",
             "schema", "bench")  # fmt: skip
 EPILOG = f"Exit codes: {', '.join(f'{code} {told}' for code, told in EXIT_CODES.items())}."
 

@@ -20,6 +20,7 @@ from trsim.scenario.slender import slender
 from trsim.scenario.strangers import strangers
 
 LARGE, SMALL = 3.0, 0.01  # radius of gyration over the reach of the joints
+SHAPED = 30.0  # instead of LARGE where it follows from a shape: only another unit makes it that
 ROUNDED = 1e-3  # inertias are typed with three or four digits
 CONFORMAL, LOOSE = 1e-3, 0.2  # clearance over radius
 OFF = 0.1  # restitution delivered against restitution written
@@ -103,11 +104,13 @@ def _sizes(scenario: Any) -> Iterator[str]:
         reach = max((dist(p, body.at) for p in points.get(name, ())), default=0.0)
         text = f"{where}: radius of gyration sqrt(inertia/mass) = {radius:.3g} m, but "
         ask = "; check mass, inertia (kg*m^2, about the centre of mass) and `at`"
-        if reach > 0.0 and radius > LARGE * reach:
+        shaped = body.shape is not None and not body.says("inertia")
+        large = SHAPED if shaped else LARGE
+        if reach > 0.0 and radius > large * reach:
             yield f"{text}its points lie within {reach:.3g} m of its centre{ask}"
         elif reach > 0.0 and radius < SMALL * reach:
             yield f"{text}its points lie up to {reach:.3g} m from its centre{ask}"
-        elif reach == 0.0 and 0.0 < LARGE * size < radius:
+        elif reach == 0.0 and 0.0 < large * size < radius:
             yield f"{text}the whole mechanism is {size:.3g} m large{ask}"
 
 

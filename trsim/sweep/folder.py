@@ -40,7 +40,10 @@ def check_usable(folder: Path) -> None:
         and not all(map(_of_a_start, folder.iterdir()))
     ):
         what = f"{folder} is a folder of other files, not of a sweep"
-        raise UsageError(what, "Name another one with -o.")
+        hint = "Name another one with -o."
+        if Path(f"{folder}.h5").exists():  # as `report` of that run makes it
+            hint = f"It has figures of {folder}.h5, perhaps.  {hint}"
+        raise UsageError(what, hint)
     for name, kind in (("index.csv", INDEX), ("plan.json", PLAN)):
         replaceable(folder / name, kind)
 

@@ -17,4 +17,5 @@ from trsim.cli.documents.runs import Statics as Statics
 from trsim.cli.documents.sweeps import Status as Status
 from trsim.cli.documents.sweeps import Sweep as Sweep
 from trsim.cli.documents.words import Explain as Explain
+from trsim.cli.documents.words import Init as Init
 from trsim.cli.documents.words import Schema as Schema

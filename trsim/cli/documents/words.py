@@ -118,6 +118,40 @@ class Explain(Document):
     functions: list[FunctionPage]
 
 
+class TemplateRow(TypedDict):
+    """A scenario to begin with.
+
+    name   after --template
+    title  of the scenario
+    about  what it is, and what to expect
+    files  that are written, the one to begin with first
+    """
+
+    name: str
+    title: str
+    about: str
+    files: list[str]
+
+
+class Init(Document):
+    """trsim init.
+
+    template   which one was written, or null: then they are listed
+    title      of its scenario
+    about      what it is, and what to expect
+    files      as written, the one to begin with first
+    commands   to try, in the folder of the files
+    templates  where they are listed
+    """
+
+    template: str | None
+    title: str | None
+    about: str | None
+    files: list[str]
+    commands: list[str]
+    templates: list[TemplateRow]
+
+
 class Schema(Document):
     """trsim schema.
 

@@ -1,0 +1,60 @@
+"""docs/gallery.md, from the templates themselves."""
+
+from pathlib import Path
+
+from trsim.scenario.shipped import FOLDERS, TEMPLATES, Template, template
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE, PICTURES = DOCS / "gallery.md", DOCS / "gallery"
+TOP = """\
+# Gallery
+
+Each of these comes with trsim. `trsim init NAME` writes the file that is shown here into the
+current folder, and says what to type next. Its first line says what to expect, and a test holds
+it to that: by a closed form, or by an integration of its own. A picture shows the mechanism as
+`trsim report --animate` draws it, pale at other moments, and the first plot of the file.
+`python -m benchmarks.gallery` makes pictures and page again.
+
+{contents}
+"""
+ONE = """
+## {name}
+
+**{title}.** {about}
+
+![{title}](gallery/{name}.png)
+
+```sh
+{commands}
+```
+
+{text}"""
+
+
+def page() -> str:
+    """The whole page."""
+    every = [template(name) for name in TEMPLATES]
+    contents = "\n".join(f"* [{one.name}](#{one.name}): {one.title}" for one in every)
+    return TOP.format(contents=contents) + "".join(map(entry, every))
+
+
+def entry(one: Template) -> str:
+    """A template: what it is, its picture, its commands, its file."""
+    step = [f"cd {one.name}"] if one.name in FOLDERS else []
+    commands = "\n".join([f"trsim init {one.name}", *step, *one.commands])
+    return ONE.format(name=one.name, title=one.title, about=sentence(one.about),
+                      commands=commands, text=shown(one))  # fmt: skip
+
+
+def sentence(text: str) -> str:
+    return text[:1].upper() + text[1:].rstrip(",;:") + ("" if text.endswith(".") else " ...")
+
+
+def shown(one: Template) -> str:
+    """Its file; of a folder the one to begin with, and a list of the others."""
+    block = f"```yaml file={one.first}\n{one.text.rstrip()}\n```\n"
+    others = [file for file in one.files if file != one.first]
+    if not others:
+        return block
+    told = ", ".join(f"`{file}`" for file in others)
+    return f"{block}\nWith it {'come' if len(others) > 1 else 'comes'} {told}.\n"
