@@ -23,9 +23,10 @@ def command(
 ) -> None:
     """Print what is in the result file RUN, or the numbers that WORDS ask for.
 
-    A word is KIND:OF, such as peak:B.contact_force or mean:stroke.rate@0.3..0.9 (s); kinds are those
-    of `report --table`.  Each number is a line: with its SI unit behind it, or alone in the unit of
-    --unit, which may be given once for each kind of quantity.
+    A word is KIND:OF, such as peak:B.contact_force or mean:stroke.rate@0.3..0.9 (s); the kinds are
+    those of `report --table`.  Each number is a line: with its SI unit behind it, or alone in the
+    unit of --unit, which may be given once for each kind of quantity.
+
     With --verify the content hash is computed anew and compared; exit code 7 if it differs.
     """
     from trsim.store.read import read

@@ -29,6 +29,7 @@ class Kind(NamedTuple):
 
     name: str
     fits: Callable[[bytes], bool]  # the beginning of a file
+    at_end: bool = False  # ... or the last bytes of it
 
 
 def _is_result(start: bytes) -> bool:
@@ -45,12 +46,13 @@ def _is_part(start: bytes) -> bool:
 def _is_table(start: bytes) -> bool:
     """Titles with units, and numbers written in full, as `export` writes them."""
     titles, *rows = start.split(b"\r\n")
-    if not titles.startswith((b"time [s],", b"time [s]")) or not rows:
+    between = b"\t" if titles.startswith(b"time [s]\t") else b","
+    if not titles.startswith((b"time [s]" + between, b"time [s]")) or not rows:
         return False
-    if any(not title.strip(b'"').endswith(b"]") for title in titles.split(b",")):
+    if any(not title.strip(b'"').endswith(b"]") for title in titles.split(between)):
         return False
     try:
-        return not rows[0] or all(repr(float(x)) == x.decode() for x in rows[0].split(b","))
+        return not rows[0] or all(repr(float(x)) == x.decode() for x in rows[0].split(between))
     except ValueError:
         return False
 
@@ -109,6 +111,8 @@ def replaceable(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = (
         if not found.st_mode & 0o222 or not os.access(target, os.W_OK):
             raise FileError(f"{target} is write-protected", ELSEWHERE)
         with target.open("rb") as file:
+            if kind.at_end:
+                file.seek(max(found.st_size - BEGINNING, 0))
             start = file.read(BEGINNING)
     if start and not kind.fits(start):
         raise UsageError(f"{target} exists and is not a {kind.name}", ELSEWHERE)
