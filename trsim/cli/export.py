@@ -10,7 +10,7 @@ import click
 from trsim.cli.frame import NAMED, Answer, framed, unheard
 from trsim.errors import FileError, UsageError, known
 
-FORMATS = ("csv", "tsv", "xlsx", "parquet", "mat")
+FORMATS = ("csv", "tsv", "xlsx", "parquet", "mat", "pvd")  # the last one is no table
 
 
 @click.command("export")
@@ -32,7 +32,8 @@ def command(
     """Write the channels of the result file RUN as a table, one line per output row.
 
     The first line names them with their units; components of vectors are NAME.x, NAME.y, NAME.z.
-    The ending of the file says which format: .csv, .tsv, .xlsx, .parquet or .mat.
+    The ending of the file says which format: .csv, .tsv, .xlsx, .parquet or .mat; .pvd is the
+    motion of bodies and bars for ParaView.
     Default output: RUN.csv beside it.
     """
     from trsim.store.export import export
@@ -41,6 +42,8 @@ def command(
 
     form = format_of(output or "", "csv" if as_csv else form)
     found = read(run)
+    if form == "pvd":
+        return moving(answer, found, placed(Path(run), output, form), channels)
     of = {n: channel for channel in found.names for n in components(channel, found.sizes[channel])}
     names = chosen(of, channels)
     if output == "-":
@@ -67,6 +70,22 @@ def format_of(output: str, form: str | None) -> str:
         return ending
     told = f"{output} does not end like a format of `trsim export`"
     raise UsageError(told, f"Known: .{', .'.join(FORMATS)}.  Or give one with --format.")
+
+
+def moving(answer: Answer, run: Any, target: Path, channels: tuple[str, ...]) -> None:
+    """The motion as files of ParaView."""
+    from trsim.report.vtk import write
+
+    if channels:
+        raise UsageError("--channels goes with tables, not with .pvd", "Leave it out.")
+    if target.name == "-":
+        raise UsageError("the files of ParaView are many", "Name one that ends in .pvd with -o.")
+    frames, warnings = write(run, target)
+    for text in warnings:
+        answer.warn(str(run.path), text)
+    answer.data |= {"file": str(target), "rows": frames, "channels": []}
+    answer.put(str(target))
+    answer.say(f"{target}: {frames} frames")
 
 
 def streamed(answer: Answer, run: Any, names: list[str], form: str) -> None:

@@ -164,7 +164,7 @@ class Export(Document):
     """trsim export.
 
     file      written
-    rows      lines after the first
+    rows      lines after the first, or frames
     channels  columns after the time; components of vectors are NAME.x, NAME.y, NAME.z
     """
 

@@ -16,9 +16,10 @@ from trsim.store.export.columns import Columns
 
 LONGEST = 63  # letters of a name
 TEXT = b"MATLAB 5.0 MAT-file, written by trsim".ljust(116)
-WORDS = set(
+WORDS = re.findall(
+    r"\w+",
     "break case catch classdef continue else elseif end for function global if otherwise parfor "
-    "persistent return spmd switch try while trsim".split()
+    "persistent return spmd switch try while trsim",
 )
 
 
