@@ -1,6 +1,6 @@
 """Figures and tables of result files; the only place that imports matplotlib."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
@@ -10,6 +10,8 @@ from trsim.errors import FileError, UsageError
 
 if TYPE_CHECKING:
     from trsim.report.asked import Asked, Found
+
+from trsim.report.looks import Looks, chosen
 
 SWEEP = ("bifurcation", "sobol", "map", "bars", "envelope")  # what only a study has
 RUNS = (
@@ -24,39 +26,55 @@ RUNS = (
 )  # what only runs have
 
 
-def report(paths: str | PathLike | Sequence[str | PathLike], folder: str | PathLike) -> list[Path]:
+def report(
+    paths: str | PathLike | Sequence[str | PathLike],
+    folder: str | PathLike,
+    looks: Looks = Looks(),  # noqa: B008
+) -> list[Path]:
     """Write every figure and table of a run into a folder; several runs are overlaid.
 
-    Returns the files written.  Raises FileError.
+    Returns the files written.  Raises FileError, and UsageError for looks that make no sense.
     """
-    from trsim.report import figures, tables
+    from trsim.report import figures, style, tables
     from trsim.report.display import compared
     from trsim.store.read import read
 
     given = [paths] if isinstance(paths, str | PathLike) else list(paths)
-    runs = compared([read(path) for path in given])
-    with made(folder) as folder:
+    runs = compared([read(path) for path in given], chosen(looks.units))
+    with style.asked(looks), made(folder) as folder:
         return [*figures.draw(runs, folder), *tables.draw(runs, folder)]
 
 
-def analysed(paths: Sequence[str | PathLike], folder: str | PathLike, asked: "Asked") -> "Found":
+def analysed(
+    paths: Sequence[str | PathLike],
+    folder: str | PathLike,
+    asked: "Asked",
+    looks: Looks = Looks(),  # noqa: B008
+) -> "Found":
     """Write what was asked for of result files, or of the folder of one sweep.
 
     Raises FileError; UsageError where something makes no sense for what was given.
     """
+    from trsim.report import style
     from trsim.report.asked import words
 
     check_asked(paths, asked)
-    with made(folder) as folder:
+    units = chosen(looks.units)
+    with style.asked(looks), made(folder) as folder:
         if Path(paths[0]).is_dir():
             from trsim.report import studies
             from trsim.sweep.study import study
 
-            return studies.draw(study(Path(paths[0])), asked, words(asked.table), folder)
-        return of_runs(paths, folder, asked)
+            return studies.draw(study(Path(paths[0])), asked, words(asked.table), folder, units)
+        return of_runs(paths, folder, asked, units)
 
 
-def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "Found":
+def of_runs(
+    paths: Sequence[str | PathLike],
+    folder: Path,
+    asked: "Asked",
+    units: Mapping[str, tuple[float, str]],
+) -> "Found":
     """The analyses of result files."""
     from trsim.report import compared as beside
     from trsim.report import exponents, numbers, plots, portraits, sections, spectra
@@ -65,7 +83,7 @@ def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "F
     from trsim.report.display import compared
     from trsim.store.read import read
 
-    runs, found = compared([read(path) for path in paths]), nothing()
+    runs, found = compared([read(path) for path in paths], units), nothing()
     for word in asked.plot:
         found.add(plots.draw(runs, word, asked.overlay, asked.window, folder, found.files))
     if asked.laws:

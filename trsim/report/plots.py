@@ -55,7 +55,7 @@ def draw(
     others = [given(Path(file), of.x, units, first.unit(of.x)) for file in tables]
     apart = list(compared(every, others, of, within))
     found, name = nothing(), named(word, text)
-    while folder / f"{name}.png" in taken:  # another word of the same letters
+    while name in {path.stem for path in taken}:  # another word of the same letters
         name += "_too"
     path = folder / f"{name}.png"
     found.files.append(style.draw(path, figure, every, others, of, within, apart))
@@ -91,12 +91,14 @@ def compared(
 def written(
     path: Path, one: Curves, of: Plotted, within: Limits, tables: tuple[str, ...]
 ) -> Path:  # fmt: skip
-    """The rows that are drawn, as `export` writes them, the abscissa first: SI, numbers in full."""
+    """The rows that are drawn, as `export` writes them, the abscissa first: numbers in full."""
     names = list(dict.fromkeys([of.x, "time", *of.y]))
     columns = {"time": one.rows.time, **one.rows.y, of.x: one.rows.x}
     inside = (one.rows.x >= within[0]) & (one.rows.x <= within[1])
-    lines = np.column_stack([columns[name][inside] for name in names]).tolist()
-    titles = [f"{name} [{one.shown.run.unit(name)}]" for name in names]
+    units = [one.shown.told(one.shown.run.unit(name)) for name in names]
+    titles = [f"{name} [{text}]" for name, (_, text) in zip(names, units, strict=True)]
+    factors = [factor for factor, _ in units]
+    lines = (np.column_stack([columns[name][inside] for name in names]) * factors).tolist()
     return table(path, titles, lines, given=tables)
 
 

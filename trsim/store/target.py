@@ -69,6 +69,14 @@ def _is_figure(start: bytes) -> bool:
     return start.startswith(b"\x89PNG") and b"Software\0trsim" in start[:HEADER]
 
 
+def _is_pdf(end: bytes) -> bool:
+    return b"/Creator (trsim)" in end and b"%%EOF" in end
+
+
+def _is_svg(start: bytes) -> bool:
+    return start.startswith(b"<?xml") and b"<dc:title>trsim</dc:title>" in start[:HEADER]
+
+
 def headed(*titles: str) -> Kind:
     """Tables that begin with these titles."""
     line = ",".join(titles).encode()
@@ -92,6 +100,11 @@ LOCK = Kind("lock of trsim", _is_lock)
 TABLE = Kind("table that `trsim export` wrote", _is_table)
 SCHEMA = Kind("schema of trsim", _is_schema)
 FIGURE = Kind("figure of trsim", _is_figure)
+FIGURES = {
+    "png": FIGURE,
+    "pdf": Kind("figure of trsim", _is_pdf, at_end=True),
+    "svg": Kind("figure of trsim", _is_svg),
+}
 
 
 def replaceable(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> Path:
