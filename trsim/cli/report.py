@@ -18,6 +18,10 @@ from trsim.studies import STUDIES, load
 @click.option("--plot", multiple=True, metavar="'Y, Y2 : X'",
               help="Channels over any other one, or over time.")  # fmt: skip
 @click.option("--window", default="", metavar="A..B", help="Of X in --plot: 0..110deg.")
+@click.option("--zoom", default="", metavar="A..B|off",
+              help="The stretch of X that --plot enlarges; found unless given.")  # fmt: skip
+@click.option("--second-axis", is_flag=True, help="Two units of --plot in one panel.")
+@click.option("--magnitude", is_flag=True, help="Vectors in --plot as their magnitudes.")
 @click.option("--laws", is_flag=True, help="Every law as used, and the range that was visited.")
 @click.option("--section", multiple=True, metavar="when=CHANNEL,crosses=up,plot=X:Y",
               help="A Poincare section that was not declared, with its errors.")  # fmt: skip

@@ -58,6 +58,7 @@ def analysed(
     from trsim.report import style
     from trsim.report.asked import words
 
+    paths, asked = with_tables(paths, asked)
     check_asked(paths, asked)
     units = chosen(looks.units)
     with style.asked(looks), made(folder) as folder:
@@ -84,8 +85,10 @@ def of_runs(
     from trsim.store.read import read
 
     runs, found = compared([read(path) for path in paths], units), nothing()
+    wanted = plots.Wanted(asked.overlay, asked.window, asked.zoom, asked.second_axis,
+                          asked.magnitude)  # fmt: skip
     for word in asked.plot:
-        found.add(plots.draw(runs, word, asked.overlay, asked.window, folder, found.files))
+        found.add(plots.draw(runs, word, wanted, folder, found.files))
     if asked.laws:
         found.add(of_laws.draw(runs, folder))
     if asked.section:
@@ -103,6 +106,23 @@ def of_runs(
     if asked.table:
         found.add(numbers.draw(runs, words(asked.table), folder))
     return found
+
+
+def with_tables(
+    paths: Sequence[str | PathLike], asked: "Asked"
+) -> tuple[list[str | PathLike], "Asked"]:
+    """The runs, and what was asked for with the tables among them laid over its plots."""
+    tables = [path for path in paths if Path(path).suffix.lower() == ".csv"]
+    if not tables:
+        return list(paths), asked
+    if not asked.plot:
+        what = f"{tables[0]} is a table"
+        raise UsageError(what, "--plot 'Y : X' draws it beside the runs, by the names of columns.")
+    runs = [path for path in paths if path not in tables]
+    if not runs:
+        what = "tables alone have nothing to be laid over"
+        raise UsageError(what, "Name a result file before them.")
+    return runs, asked._replace(overlay=(*asked.overlay, *map(str, tables)))
 
 
 def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
@@ -125,6 +145,9 @@ def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
         raise UsageError("--over goes with --bifurcation, --table or --map")
     if asked.window and not asked.plot:
         raise UsageError("--window goes with --plot", "Others take a window as WORD@BEGIN..END.")
+    of_plots = [name for name in ("zoom", "second_axis", "magnitude") if getattr(asked, name)]
+    if of_plots and not asked.plot:
+        raise UsageError(f"--{of_plots[0].replace('_', '-')} goes with --plot")
     if asked.against and not (asked.compare or (asked.overlay and not asked.plot)):
         raise UsageError("--against goes with --compare or --overlay")
     if not asked.envelope and (asked.at or asked.along):
