@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from trsim.report.asked import Asked, Found
 
 from trsim.report.looks import Looks, chosen
+from trsim.report.wanted import check_given
 
 SWEEP = ("bifurcation", "sobol", "map", "bars", "envelope")  # what only a study has
 RUNS = (
@@ -40,6 +41,7 @@ def report(
     from trsim.store.read import read
 
     given = [paths] if isinstance(paths, str | PathLike) else list(paths)
+    check_given(given)
     runs = compared([read(path) for path in given], chosen(looks.units))
     with style.asked(looks), made(folder) as folder:
         return [*figures.draw(runs, folder), *tables.draw(runs, folder)]
@@ -59,6 +61,7 @@ def analysed(
     from trsim.report.asked import words
 
     paths, asked = with_tables(paths, asked)
+    check_given(paths)
     check_asked(paths, asked)
     units = chosen(looks.units)
     with style.asked(looks), made(folder) as folder:
@@ -149,7 +152,12 @@ def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
     if of_plots and not asked.plot:
         raise UsageError(f"--{of_plots[0].replace('_', '-')} goes with --plot")
     if asked.against and not (asked.compare or (asked.overlay and not asked.plot)):
-        raise UsageError("--against goes with --compare or --overlay")
+        first = paths[0]
+        raise UsageError(
+            "--against goes with --compare or --overlay",
+            f"`trsim report {first} OTHER.h5 --compare --against {asked.against}` compares two; "
+            f"of one, --plot 'CHANNEL : {asked.against}' draws any channel over it.",
+        )
     if not asked.envelope and (asked.at or asked.along):
         raise UsageError(f"--{'at' if asked.at else 'with'} goes with --envelope")
     if asked.channels and not asked.compare:
