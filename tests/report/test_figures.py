@@ -20,6 +20,7 @@ from trsim.store.read import read
 EXPECTED = {
     *("motion_stroke", "motion_crank_angle", "drive_motor", "contact_B", "orbit_B", "impact_B"),
     *("phase_B", "phase_stroke", "phase_crank_angle", "poincare_journal", "energy", "peaks"),
+    *("body_crank", "body_rod", "body_slider"),
 }
 
 
