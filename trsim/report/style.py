@@ -1,5 +1,6 @@
 """The look of all figures: sizes for print, light grid, colours that survive a photocopier."""
 
+import io
 import re
 import textwrap
 from collections.abc import Callable, Iterator
@@ -63,17 +64,18 @@ class Sheet(NamedTuple):
     form: str = "png"
     size: tuple[float, float | None] | None = None
     dpi: int = DPI
+    shots: dict[Path, bytes] = {}  # noqa: RUF012  figures that a page cannot show, as PNG
 
 
 _sheets = [Sheet()]  # the last one is at work
 
 
 @contextmanager
-def asked(looks: Looks) -> Iterator[None]:
+def asked(looks: Looks) -> Iterator[Sheet]:
     """Figures are made as asked for.  Raises UsageError, FileError for what cannot be."""
     _sheets.append(sheet(looks))
     try:
-        yield
+        yield _sheets[-1]
     finally:
         _sheets.pop()
 
@@ -87,7 +89,9 @@ def sheet(looks: Looks) -> Sheet:
     if not DOTS[0] <= dpi <= DOTS[1]:
         raise UsageError(f"{dpi} dots per inch are no figure", f"Give {DOTS[0]} to {DOTS[1]}.")
     colours = rc["axes.prop_cycle"].by_key().get("color") if "axes.prop_cycle" in rc else None
-    return Sheet(rc, tuple(colours or COLOURS), looks.form, inches(looks.size or usual.size), dpi)
+    return Sheet(
+        rc, tuple(colours or COLOURS), looks.form, inches(looks.size or usual.size), dpi, {}
+    )
 
 
 def of_file(name: str) -> dict[str, Any]:
@@ -146,6 +150,10 @@ def save(figure: Figure, path: Path) -> Path:
     """Write the picture, without anything that changes from day to day; its name."""
     form = _sheets[-1].form
     path = path.with_suffix(f".{form}")
+    if form == "pdf":
+        shot = io.BytesIO()
+        figure.savefig(shot, format="png", metadata=ABOUT["png"])
+        _sheets[-1].shots[path] = shot.getvalue()
     if form != "png":
         sharp(figure)
     with file_errors(path), fresh(path, FIGURES[form]) as unfinished:
