@@ -105,3 +105,29 @@ def test_names_are_text(tmp_path):
     small.run(tmp_path / "x.h5", text=text)
     report(tmp_path / "x.h5", tmp_path)
     assert "<script>alert" not in page(tmp_path)[0]
+
+
+def test_a_sweep(tmp_path, monkeypatch):
+    from trsim.cli import main
+
+    def command(*words):
+        with pytest.raises(SystemExit) as ended:
+            main([*words, "-q"])
+        assert ended.value.code == 0
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "crank.yaml").write_text(small.SLIDER_CRANK)
+    values = "joints.B.clearance=[0.1mm, 0.5mm]"
+    command("sweep", "crank.yaml", "--set", values, "-o", "swept", "-j", "1")
+    command("report", "swept")
+    seen = page(tmp_path / "swept/figures")[1]
+    pictures = [*(tmp_path / "swept/figures").glob("*.png")]
+    assert len(seen.images) == len(pictures) >= 2
+    for case in (tmp_path / "swept/cases").glob("*.h5"):
+        found = [p.value for p in read(case).peaks if p.channel == "B.contact_force"]
+        assert f"{max(found):.0f}" in seen.texts
+    (tmp_path / "swept/figures/index.html").unlink()
+    command("report", "swept", "--table", "summary:time")
+    assert not (
+        tmp_path / "swept/figures/index.html"
+    ).exists()  # of what was asked for there is none

@@ -60,20 +60,25 @@ def analysed(
 
     Raises FileError; UsageError where something makes no sense for what was given.
     """
-    from trsim.report import style
-    from trsim.report.asked import words
+    from trsim.report import index, style
+    from trsim.report.asked import Asked, words
 
     paths, asked = with_tables(paths, asked)
     check_given(paths)
     check_asked(paths, asked)
     units = chosen(looks.units)
-    with style.asked(looks), made(folder) as folder:
-        if Path(paths[0]).is_dir():
-            from trsim.report import studies
-            from trsim.sweep.study import study
+    with style.asked(looks) as sheet, made(folder) as folder:
+        if not Path(paths[0]).is_dir():
+            return of_runs(paths, folder, asked, units)
+        from trsim.report import studies
+        from trsim.sweep.study import study
 
-            return studies.draw(study(Path(paths[0])), asked, words(asked.table), folder, units)
-        return of_runs(paths, folder, asked, units)
+        swept = study(Path(paths[0]))
+        found = studies.draw(swept, asked, words(asked.table), folder, units)
+        if asked == Asked():
+            title = f"{Path(swept.source).stem}: {len(swept.cases)} cases"
+            found.files.append(index.of_sweep(folder, title, found, sheet.shots))
+        return found
 
 
 def of_runs(

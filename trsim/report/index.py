@@ -1,11 +1,13 @@
 """index.html of a report: summary, animation, peaks and all figures in one file to be sent."""
 
+import csv
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from trsim.errors import TrsimError
 from trsim.report import page
+from trsim.report.asked import Found
 from trsim.report.display import Shown, short
 from trsim.report.page import Block, Cell, Line, Markup, Picture, Points, Section, Table, Text
 from trsim.report.tables import Load
@@ -47,6 +49,33 @@ def write(
     names = ", ".join(shown.label or shown.run.path.name for shown in runs)
     lead = [f"Runs: {names}."] if len(runs) > 1 else []
     return page.write(folder / NAME, title, lead, sections)
+
+
+def of_sweep(folder: Path, title: str, found: Found, shots: Mapping[Path, bytes]) -> Path:
+    """The page of a sweep: its cases with their numbers, the figures, and what was told."""
+    sections = []
+    for path in (path for path in found.files if path.suffix == ".csv"):
+        with path.open(newline="", encoding="utf-8") as file:
+            head, *rows = csv.reader(file)
+        lines = [Line([Cell(number(text)) for text in row]) for row in rows]
+        sections.append(Section("cases", "Cases", [Table(head, lines)]))
+    drawn = [
+        Picture(path.stem, path, path.stem.replace("_", " "), data=shots.get(path))
+        for path in found.files
+        if path.suffix != ".csv"
+    ]
+    sections.append(Section("figures", "Figures", drawn))
+    if found.lines:
+        sections.append(Section("told", "Notes", [Points(found.lines)]))
+    return page.write(folder / NAME, title, [], sections)
+
+
+def number(text: str) -> str:
+    """A cell of a table for a reader."""
+    try:
+        return short(float(text)) if text else ""
+    except ValueError:
+        return text
 
 
 def summary(runs: list[Shown]) -> Iterator[Block]:
