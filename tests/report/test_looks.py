@@ -49,7 +49,8 @@ def test_units_in_figures_and_their_tables(door, tmp_path):
     with look():
         made = motion(compared([read(door)], chosen(units)), "door_angle")
     labels = [axes.get_ylabel() for axes in made.axes]
-    assert labels[:2] == ["door angle\n(rad)", "angular velocity\n(rpm)"]
+    wanted = ["door angle\n(rad)", "angular velocity\n(rpm)", "angular acceleration\n(rad/s²)"]
+    assert labels == wanted  # accelerations go with the angle, speeds as asked
     np.testing.assert_allclose(made.axes[1].lines[0].get_ydata()[0], 36.0, rtol=1e-9)
     words = Asked(plot=("door_angle.rate : door_angle",), table=("peak:door_angle.rate",))
     found = analysed([door], tmp_path, words, Looks(units))

@@ -96,6 +96,26 @@ def test_cells_are_sound(tmp_path):
     assert volume == pytest.approx(0.2 * 0.3 * 0.4, rel=1e-9)  # closed, and seen from outside
 
 
+def test_a_body_with_a_hole_and_one_without_a_shape(tmp_path):
+    """The dark rings around a hole are meshes of their own: all points have cells, those of their
+    own body."""
+    hole = "{cylinder: 0.1, length: 0.4, at: [10, -5, 2], hole: true}"
+    text = SPINNING.replace("at: [10, -5, 2]}]", f"at: [10, -5, 2]}}, {hole}]")
+    text = text.replace("solver:", "  dot: {mass: 1, inertia: [1, 1, 1], at: [20, 0, 0]}\nsolver:")
+    run, *_ = of(tmp_path, text)
+    _, grid, names = list(frames(tmp_path / "x.pvd"))[-1]
+    assert names == ["box", "dot"]
+    parts = np.split(grid["connectivity"].ravel(), grid["offsets"].ravel()[:-1])
+    used = {number: np.unique(np.concatenate([p for p, b in zip(parts, grid["body"], strict=True)
+                                              if b == number])) for number in (0, 1)}  # fmt: skip
+    assert sorted([*used[0], *used[1]]) == list(range(len(grid["points"])))
+    for number, name in enumerate(names):
+        away = np.linalg.norm(
+            grid["points"][used[number]] - run.channel(f"{name}.position")[-1], axis=1
+        )
+        assert away.max() < 1.5  # they are ten metres apart
+
+
 def test_a_bar_is_a_line_through_its_nodes(tmp_path):
     run, count, _ = of(tmp_path, BEAM)
     for k, (_, grid, names) in enumerate(frames(tmp_path / "x.pvd")):
@@ -113,6 +133,10 @@ def test_a_flat_mechanism_stays_in_its_plane(tmp_path):
     """The animation draws its links in layers; here a slider is where its channel says."""
     run, *_ = of(tmp_path, small.SLIDER_CRANK)
     _, grid, names = list(frames(tmp_path / "x.pvd"))[-1]
+    heights = grid["points"][:, 2]
+    for number in range(len(names)):
+        cells = grid["connectivity"].reshape(-1, 3)[grid["body"].ravel() == number]
+        assert heights[cells].max() == pytest.approx(-heights[cells].min(), abs=1e-12)
     cells = grid["body"].ravel() == names.index("slider")
     used = np.unique(grid["connectivity"].reshape(-1, 3)[cells])
     low, high = grid["points"][used].min(axis=0), grid["points"][used].max(axis=0)

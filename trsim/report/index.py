@@ -60,7 +60,7 @@ def of_sweep(folder: Path, title: str, found: Found, shots: Mapping[Path, bytes]
         lines = [Line([Cell(number(text)) for text in row]) for row in rows]
         sections.append(Section("cases", "Cases", [Table(head, lines)]))
     drawn = [
-        Picture(path.stem, path, path.stem.replace("_", " "), data=shots.get(path))
+        Picture(path.stem, path, caption(path), data=shots.get(path))
         for path in found.files
         if path.suffix != ".csv"
     ]
@@ -68,6 +68,10 @@ def of_sweep(folder: Path, title: str, found: Found, shots: Mapping[Path, bytes]
     if found.lines:
         sections.append(Section("told", "Notes", [Points(found.lines)]))
     return page.write(folder / NAME, title, [], sections)
+
+
+def caption(path: Path) -> str:
+    return path.stem.removeprefix("sweep_").replace("_", " ").capitalize()
 
 
 def number(text: str) -> str:
