@@ -50,6 +50,7 @@ def test_what_most_happens_in_is_enlarged(disc, tmp_path):
     assert left.get_xlim()[1] > 1.99
     x, y = right.lines[0].get_data()
     inside = np.isfinite(x)
+    assert low <= x[inside].min() and x[inside].max() <= high  # and so its heights are those of it
     assert inside.sum() > 20 and np.diff(x[inside]).max() < 1.5e-3  # every row
     # I w' = -4 m * 100 N: pushed along x above the hinge
     w = np.degrees(-400.0 * np.clip(x[inside] - 1.0, 0.0, 0.02) / (0.5 + 2.0 * 16.0))
@@ -59,6 +60,7 @@ def test_what_most_happens_in_is_enlarged(disc, tmp_path):
     for word in ("turned", "turned.rate : turned"):  # changes all over; over what it is made of
         assert len(made(word, View(), disc).axes) == 1
     assert len(made("turned.rate", View(zoom=None), disc).axes) == 1
+    assert len(made("turned.rate, turned", View(), disc).axes) == 2  # of the angle it is little
     _, right = made("turned", View(zoom=(0.5, 0.75)), disc).axes
     assert right.get_xlim() == (0.5, 0.75)
 
