@@ -75,6 +75,9 @@ def test_other_kinds_of_figures_are_in_it_too(form, kind, tmp_path):
     seen = page(tmp_path / "r")[1]
     assert len(seen.images) == len([path for path in written if path.suffix == f".{form}"]) - 1
     assert all(src.startswith(f"data:image/{kind};base64,") for src in seen.images)
+    begin = {"png": b"\x89PNG", "svg+xml": b"<?xml"}[kind]
+    for src in seen.images:
+        assert base64.b64decode(src.partition("base64,")[2]).startswith(begin)
 
 
 def test_several_runs(paths, tmp_path):
