@@ -65,6 +65,23 @@ def test_curves_are_those_of_a_mass_on_springs(sprung):
     np.testing.assert_allclose(line.get_ydata(), 0.3 * np.sin(15.0 * t), atol=1e-8)
 
 
+HANGING = """\
+bodies: {bob: {mass: 3, inertia: 1e-9, at: [0, -2]}}
+joints: {cord: {type: link, bodies: [ground, bob], points: [[0, 0], [0, -2]]}}
+gravity: [0, -10, 0]
+solver: {end: 0.1 s}
+"""
+
+
+def test_force_along_a_rod(tmp_path):
+    """3 kg hang on it: 30 N."""
+    small.run(tmp_path / "x.h5", text=HANGING)
+    with look():
+        made = dict(figures.everything(compared([read(tmp_path / "x.h5")])))
+    [axes] = made["force_cord"].axes
+    np.testing.assert_allclose(np.abs(axes.lines[0].get_ydata()), 30.0, rtol=1e-9)
+
+
 def test_several_runs_have_colours_and_components_dashes(paths):
     runs = compared([read(path) for path in paths])
     with look():

@@ -47,6 +47,15 @@ def force(runs: list[Shown], name: str) -> Figures:
         yield f"force_{name}", drawn(runs, channels, name)
 
 
+def pull(runs: list[Shown], name: str) -> Figures:
+    """The force along a rod or a rope, or between teeth: of joints that are told by one number."""
+    shown = next(one for one in runs if name in one.run.parts)
+    words = elements.load(shown.run.parts[name].type).loads
+    channels = [f"{name}.{word}" for word in words if shown.has(f"{name}.{word}")]
+    if channels:
+        yield f"force_{name}", drawn(runs, channels, name)
+
+
 def changes(runs: list[Shown], channel: str) -> bool:
     there = [shown.run.channel(channel) for shown in runs if shown.has(channel)]
     return any(np.any(np.ptp(values, axis=0) > 0.0) for values in there)

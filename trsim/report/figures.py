@@ -47,6 +47,9 @@ def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
     for force in parts(runs, "forces"):
         if force not in contacts(runs):
             yield from components.force(runs, force)
+    for joint in parts(runs, "joints"):
+        if joint not in contacts(runs):
+            yield from components.pull(runs, joint)
     for name in contacts(runs):
         yield f"contact_{name}", contact_force(runs, name)
         if some(runs, f"{name}.eccentricity_x", f"{name}.eccentricity_y"):
