@@ -15,7 +15,7 @@ from trsim.report.display import compared
 from trsim.scenario.load import load, loads
 from trsim.scenario.table import rows
 from trsim.solve.simulate import simulate
-from trsim.store.csv import export
+from trsim.store.export import export
 from trsim.store.hdf5 import write
 from trsim.store.read import read
 from trsim.units import titled

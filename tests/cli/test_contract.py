@@ -58,7 +58,7 @@ SEAMS = {  # what a command calls to do its work
     "statics": "trsim.cli.statics.one",
     "report": "trsim.report.report",
     "show": "trsim.store.read.read",
-    "export": "trsim.store.csv.export",
+    "export": "trsim.store.export.export",
     "recover": "trsim.store.recover.recover",
     "explain": "trsim.scenario.explain.explained",
     "schema": "trsim.cli.published.published",

@@ -64,7 +64,7 @@ def test_export_refuses(result, trsim):
     assert "Did you mean 'stroke'?" in err
     assert trsim("export", "none.h5", "--csv")[0] == 7
     assert trsim("export", "x.h5", "--csv", "-o", "crank.yaml/x.csv")[0] == 7
-    assert trsim("export", "x.h5")[0] == 2
+    assert trsim("export", "x.h5", "-o", "x.txt")[0] == 2
 
 
 # --- run of a result -------------------------------------------------------------------------

@@ -227,7 +227,7 @@ def test_export_that_is_interrupted_leaves_nothing(folder, trsim, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("trsim.store.csv._tables", interrupted)
+    monkeypatch.setattr("trsim.store.export.columns.Columns.blocks", interrupted)
     assert trsim("export", "x.h5", "--csv")[0] == 130
     assert set(folder.iterdir()) == before
 

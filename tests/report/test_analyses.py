@@ -431,6 +431,7 @@ def test_every_run_is_read_once(study, tmp_path, monkeypatch):
 
 
 def test_what_does_not_fit_is_refused(paths, tmp_path):
+    (tmp_path / "plan.json").write_text("{}")  # the folder of a sweep
     with pytest.raises(UsageError, match="--sobol is not for result files"):
         analysed(paths, tmp_path / "o", Asked(sobol=("a:b",)))
     with pytest.raises(UsageError, match="--spectrum is not for a sweep"):
@@ -459,6 +460,7 @@ def test_an_option_that_would_do_nothing_is_refused(asked, what, paths, tmp_path
 
 
 def test_an_option_that_would_do_nothing_to_a_sweep_is_refused(tmp_path):
+    (tmp_path / "plan.json").write_text("{}")
     with pytest.raises(UsageError, match="--over goes with"):
         analysed([tmp_path], tmp_path / "o", Asked(over="a.b", sobol=("final:stroke",)))
 

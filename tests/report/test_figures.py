@@ -20,6 +20,7 @@ from trsim.store.read import read
 EXPECTED = {
     *("motion_stroke", "motion_crank_angle", "drive_motor", "contact_B", "orbit_B", "impact_B"),
     *("phase_B", "phase_stroke", "phase_crank_angle", "poincare_journal", "energy", "peaks"),
+    *("body_crank", "body_rod", "body_slider"),
 }
 
 
@@ -55,7 +56,7 @@ solver: {end: 1 s, tolerance: 1e-6}
 """
     small.run(tmp_path / "run.h5", text=text)
     written = {path.name for path in report(tmp_path / "run.h5", tmp_path)}
-    assert written == {"body_bob.png", "energy.png", "peaks.csv", "peaks.png"}
+    assert written == {"body_bob.png", "energy.png", "peaks.csv", "peaks.png", "index.html"}
 
 
 def test_failed_run_is_reported_as_far_as_it_came(tmp_path):

@@ -30,8 +30,9 @@ from trsim.analyse.fluctuation import WIDTH, fluctuation, shows
 from trsim.analyse.shares import shares
 from trsim.analyse.window import Window, parted, rows_in, scalar_channel, window
 from trsim.arrays import Array
-from trsim.errors import UsageError, described, known
+from trsim.errors import ScenarioError, UsageError, described, known
 from trsim.store.read import Run
+from trsim.units import unit as unit_of
 
 Number = tuple[float, str]
 
@@ -46,7 +47,7 @@ def scalar(run: Run, word: str) -> Number:
     name, text = parted(word)
     kind, colon, of = name.partition(":")
     if kind not in KINDS:
-        raise UsageError(f"no number of a run: {described(word)}", known(kind, KINDS))
+        raise _no_kind(run, word, name, kind)
     if not colon or not of:
         raise UsageError(f"{described(word)} does not say of what", FORM)
     if kind in WHOLE and text:
@@ -54,6 +55,36 @@ def scalar(run: Run, word: str) -> Number:
     within = window(run, text, rows=kind not in LOCATED)
     value, unit = KINDS[kind](run, of, within, bool(text))
     return float(value), unit
+
+
+def _no_kind(run: Run, word: str, name: str, kind: str) -> UsageError:
+    """What is wrong with a word that does not begin with the kind of a number."""
+    if run.stores(name):
+        what = f"{described(name)} does not say which number of the channel"
+        return UsageError(what, f"Write peak:{name}, mean:{name} or final:{name}.")
+    hint = known(kind, KINDS) if ":" in word else f"{FORM}  {known(name, run.names)}"
+    return UsageError(f"no number of a run: {described(word)}", hint)
+
+
+def in_units(word: str, number: Number, units: tuple[str, ...]) -> Number:
+    """A number in the one of some units that is of its kind; as it is where none is given.
+
+    Raises UsageError for what is no unit, and where none of them is of its kind.
+    """
+    value, si = number
+    for text in units:
+        try:
+            factor, dimension = unit_of(text)
+        except ScenarioError as error:
+            raise UsageError(error.what, error.hint) from None
+        if dimension == unit_of(si)[1]:
+            return value / float(factor), text
+    if units:
+        told = ", ".join(described(text) for text in units)
+        told = f"{told} is no unit" if len(units) == 1 else f"none of {told} is a unit"
+        what = "without a unit" if si == "-" else f"in {si}"
+        raise UsageError(f"{told} of {word}", f"It is a number {what}.")
+    return number
 
 
 # --- of channels -----------------------------------------------------------------------------

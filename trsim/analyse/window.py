@@ -102,7 +102,8 @@ def scalar_channel(run: Run, name: str) -> Array:
     found = run.channel(name)
     if found.ndim > 1:
         raise UsageError(
-            f"'{name}' has {found.shape[1]} components", f"Say '{name}.x', or '|{name}|'."
+            f"'{name}' has {found.shape[1]} components",
+            f"Say '{name}.x', or '|{name}|' for its magnitude.",
         )
     return np.asarray(found)
 

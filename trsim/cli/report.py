@@ -8,6 +8,7 @@ import click
 
 from trsim.cli.frame import NAMED, Answer, framed
 from trsim.errors import UsageError
+from trsim.report.looks import FORMATS, Looks
 from trsim.studies import STUDIES, load
 
 
@@ -17,6 +18,10 @@ from trsim.studies import STUDIES, load
 @click.option("--plot", multiple=True, metavar="'Y, Y2 : X'",
               help="Channels over any other one, or over time.")  # fmt: skip
 @click.option("--window", default="", metavar="A..B", help="Of X in --plot: 0..110deg.")
+@click.option("--zoom", default="", metavar="A..B|off",
+              help="The stretch of X that --plot enlarges; found unless given.")  # fmt: skip
+@click.option("--second-axis", is_flag=True, help="Two units of --plot in one panel.")
+@click.option("--magnitude", is_flag=True, help="Vectors in --plot as their magnitudes.")
 @click.option("--laws", is_flag=True, help="Every law as used, and the range that was visited.")
 @click.option("--section", multiple=True, metavar="when=CHANNEL,crosses=up,plot=X:Y",
               help="A Poincare section that was not declared, with its errors.")  # fmt: skip
@@ -45,6 +50,13 @@ from trsim.studies import STUDIES, load
 @click.option("--with", "along", multiple=True, metavar="CHANNEL,...",
               help="What else --envelope tells.")  # fmt: skip
 @click.option("--over", metavar="KEY", help="The swept key that figures of a sweep are over.")
+@click.option("--units", multiple=True, metavar="'KIND: UNIT, ...'",
+              help="Of figures and tables: 'angle: deg, speed: rpm'.")  # fmt: skip
+@click.option("--format", "form", type=click.Choice(FORMATS), default="png", show_default=True,
+              help="Of the figures.")  # fmt: skip
+@click.option("--size", default="", metavar="WIDTHxHEIGHT", help="Of the figures, mm: 120x80.")
+@click.option("--dpi", type=int, help="Dots per inch of the figures, 150 unless given.")
+@click.option("--style", default="", metavar="slides|FILE.mplstyle", help="Of the figures.")
 @click.option(
     "--paper", type=click.Choice(tuple(STUDIES)), help="Judge a published study by its sweep."
 )
@@ -69,6 +81,9 @@ def command(
     own = os.path.join(runs[0], "figures") if swept else os.path.splitext(runs[0])[0]
     folder = Path(output or own)
     animate, magnified = options.pop("animate"), options.pop("magnify_clearance")
+    looks = Looks(**{name: options.pop(name) for name in Looks._fields})
+    if (paper or animate) and looks != Looks():
+        raise UsageError("--units, --format, --size, --dpi and --style are for figures of runs")
     if magnified is not None and not animate:
         raise UsageError("--magnify-clearance goes with --animate")
     if paper:
@@ -77,11 +92,11 @@ def command(
     elif animate:
         written = animated(answer, runs, folder, magnified, options)
     elif not swept and not any(options.values()):
-        written = report.report(runs, folder)
+        written = report.report(runs, folder, looks)
     else:
         from trsim.report.asked import Asked
 
-        found = report.analysed(runs, folder, Asked(**options))
+        found = report.analysed(runs, folder, Asked(**options), looks)
         written = found.files
         for text in found.lines:
             answer.put(text)

@@ -7,17 +7,25 @@ import click
 
 from trsim.cli.frame import Answer, framed
 from trsim.cli.redundancy import redundancy
-from trsim.errors import FileError
+from trsim.errors import FileError, UsageError
 
 TOLD = ("format", "format_version", "title", "status", "reason", "content_sha256")
 
 
 @click.command("show")
 @click.argument("run", type=click.Path())
+@click.argument("words", nargs=-1)
+@click.option("--unit", "units", multiple=True, metavar="UNIT", help="Of the numbers: kN, rpm.")
 @click.option("--verify", is_flag=True, help="Read all of it, and compare the content hash.")
 @framed
-def command(answer: Answer, run: str, verify: bool) -> None:
-    """Print what is in the result file RUN.
+def command(
+    answer: Answer, run: str, words: tuple[str, ...], units: tuple[str, ...], verify: bool
+) -> None:
+    """Print what is in the result file RUN, or the numbers that WORDS ask for.
+
+    A word is KIND:OF, such as peak:B.contact_force or mean:stroke.rate@0.3..0.9 (s); the kinds are
+    those of `report --table`.  Each number is a line: with its SI unit behind it, or alone in the
+    unit of --unit, which may be given once for each kind of quantity.
 
     With --verify the content hash is computed anew and compared; exit code 7 if it differs.
     """
@@ -50,6 +58,10 @@ def command(answer: Answer, run: str, verify: bool) -> None:
         from trsim.cli.certify import full
 
         answer.data["certificate"] = full(certified)
+    if units and not words:
+        raise UsageError("--unit goes with a number", "For example `show FILE peak:B.force`.")
+    if words:
+        return numbers(answer, found, words, units)
     for text in lines(found, answer.data):
         answer.put(text)
     if certified is not None:
@@ -58,6 +70,22 @@ def command(answer: Answer, run: str, verify: bool) -> None:
         answer.put("  certificate: value (value less that of the twin)")
         for text in table(certified):
             answer.put(f"    {text}")
+
+
+def numbers(answer: Answer, run: Any, words: tuple[str, ...], units: tuple[str, ...]) -> None:
+    """Print the numbers of some words, in full."""
+    from trsim.analyse.outputs import in_units, scalar
+
+    found = [in_units(word, scalar(run, word), units) for word in words]
+    answer.data["values"] = [
+        {"run": str(run.path), "what": word, "value": value, "half": float("nan"), "unit": unit}
+        for word, (value, unit) in zip(words, found, strict=True)
+    ]
+    for word, (value, unit) in zip(words, found, strict=True):
+        if isnan(value):
+            answer.warn(str(run.path), f"{word}: it has nothing to make it of")
+        text = repr(int(value)) if value.is_integer() and unit == "-" else repr(value)
+        answer.put(text if units or unit == "-" else f"{text} {unit}")
 
 
 def check_same(run: Any) -> None:

@@ -14,6 +14,9 @@ class Asked(NamedTuple):
 
     plot: tuple[str, ...] = ()  # Y, Y2 : X[@WINDOW]
     window: str = ""  # of the abscissa of plots
+    zoom: str = ""  # the stretch of it that plots enlarge; off: none
+    second_axis: bool = False  # of plots
+    magnitude: bool = False  # of vectors in plots
     laws: bool = False
     section: tuple[str, ...] = ()  # when=CHANNEL,crosses=up,plot=X:Y
     portrait: tuple[str, ...] = ()  # X:Y[@WINDOW]

@@ -32,7 +32,9 @@ Named = tuple[str, Curve, Difference | None]  # label, curve, what it is apart f
 def draw(runs: list[Shown], asked: Asked, folder: Path) -> Found:
     """Figures and a table of the differences of the runs to the first one."""
     if len(runs) < 2:
-        raise UsageError("there is nothing to compare", "Name two result files or more.")
+        over = f" --against {asked.against}" if asked.against else ""
+        hint = f"Name two result files or more: `trsim report {runs[0].run.path} OTHER.h5 --compare"
+        raise UsageError("there is nothing to compare", f"{hint}{over}`.")
     found, rows = nothing(), []
     gone = [parting(runs[0].run, shown.run, asked.against) for shown in runs[1:]]
     for channel in chosen(runs, asked.channels):

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from trsim.arrays import Array
-from trsim.scenario.shown import UNITS
+from trsim.errors import ScenarioError
+from trsim.scenario.shown import replaced
 from trsim.store.read import Run
 from trsim.units import unit
 
@@ -22,6 +23,11 @@ class Shown(NamedTuple):
     run: Run
     label: str
     units: Mapping[str, tuple[float, str]]  # SI unit -> factor, display unit
+    asked: Mapping[str, tuple[float, str]] = {}  # those of an option: tables have them, too
+
+    def told(self, si: str) -> tuple[float, str]:
+        """Factor and text of the unit in tables: SI, but where an option asks for another one."""
+        return self.asked.get(si, (1.0, si))
 
     def unit(self, channel: str) -> str:
         return self.display(self.run.unit(channel))[1]
@@ -49,18 +55,24 @@ class Shown(NamedTuple):
         return self.run.rows > 0 and all(channel in self.run.units for channel in channels)
 
 
-def compared(runs: list[Run]) -> list[Shown]:
-    """The runs with labels that tell them apart, all in the units of the first."""
+def compared(runs: list[Run], asked: Mapping[str, tuple[float, str]] | None = None) -> list[Shown]:
+    """The runs with labels that tell them apart, all in the units of the first, or as asked for.
+
+    asked: SI unit -> factor and unit, of an option.
+    """
     scenarios = [run.scenario for run in runs]
-    units = display_units((scenarios[0].get("report") or {}).get("units") or {})
-    if max(run.summary.get("time", 1.0) for run in runs) < SHORT:
+    given = (scenarios[0].get("report") or {}).get("units") or {}
+    units = display_units(given)
+    units |= of_angles(asked or {})
+    if "time" not in given and max(run.summary.get("time", 1.0) for run in runs) < SHORT:
         units["s"] = (1e3, "ms")
+    units |= {si: (factor, written(text)) for si, (factor, text) in (asked or {}).items()}
     labels = differences(scenarios) if len(runs) > 1 else [""]
     if len(set(labels)) < len(labels):
         labels = [run.attributes["title"] or run.path.stem for run in runs]
     if len(set(labels)) < len(labels):
         labels = [str(run.path) for run in runs]
-    return [Shown(run, label, units) for run, label in zip(runs, labels, strict=True)]
+    return [Shown(run, label, units, asked or {}) for run, label in zip(runs, labels, strict=True)]
 
 
 # --- units -----------------------------------------------------------------------------------
@@ -73,16 +85,23 @@ def display_units(chosen: Mapping[str, str]) -> dict[str, tuple[float, str]]:
     m/s and m/s^2, angles take their unit along to their rates.
     """
     units = {}
-    for kind, text in {**DEFAULT, **chosen}.items():
-        si = UNITS.get(kind)
-        if si is None or unit(text)[1] != unit(si)[1]:
+    for kind, text in {**DEFAULT, **chosen}.items():  # the angle first: others replace its rates
+        try:
+            si = replaced(kind, text)
+        except ScenarioError:
             continue
-        factor = 1.0 / float(unit(text)[0])
-        units[si] = factor, written(text)
-        if kind == "angle":
-            for rate in ("/s", "/s^2"):
-                units[si + rate] = factor, written(text + rate)
+        units[si] = 1.0 / float(unit(text)[0]), written(text)
+        if si == "rad":
+            units |= of_angles({si: (units[si][0], text)})
     return units
+
+
+def of_angles(chosen: Mapping[str, tuple[float, str]]) -> dict[str, tuple[float, str]]:
+    """Rates of angles in the unit that is chosen for angles."""
+    if "rad" not in chosen:
+        return {}
+    factor, text = chosen["rad"]
+    return {f"rad{rate}": (factor, written(text + rate)) for rate in ("/s", "/s^2")}
 
 
 def written(text: str) -> str:

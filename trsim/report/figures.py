@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from trsim.arrays import Array
-from trsim.report import bars, style
+from trsim.report import bars, components, style
 from trsim.report.display import Shown, short
 from trsim.report.marks import happened, spaced
 from trsim.report.orbits import impact_map, orbit, section
@@ -35,9 +35,8 @@ def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
     """File names and figures."""
     for sensor in parts(runs, "sensors"):
         yield f"motion_{sensor}", motion(runs, sensor)
-    if not parts(runs, "sensors"):
-        for body in parts(runs, "bodies"):
-            yield from body_motion(runs, body)
+    for body in parts(runs, "bodies"):
+        yield from components.body(runs, body)
     for bar in parts(runs, "bodies"):
         if some(runs, f"{bar}.deflection", f"{bar}.node0.position"):
             yield f"bar_{bar}", bars.forces(runs, bar)
@@ -45,6 +44,12 @@ def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
     for drive in parts(runs, "drives"):
         if some(runs, f"{drive}.force"):
             yield f"drive_{drive}", drive_force(runs, drive)
+    for force in parts(runs, "forces"):
+        if force not in contacts(runs):
+            yield from components.force(runs, force)
+    for joint in parts(runs, "joints"):
+        if joint not in contacts(runs):
+            yield from components.pull(runs, joint)
     for name in contacts(runs):
         yield f"contact_{name}", contact_force(runs, name)
         if some(runs, f"{name}.eccentricity_x", f"{name}.eccentricity_y"):
@@ -106,28 +111,6 @@ def motion(runs: list[Shown], sensor: str) -> Any:
         noise = 1e-9 * largest / max(one.run.reached, 1e-300)
     axes[-1, 0].set_xlabel(runs[0].time_label)
     return finished(figure, axes[0, 0], runs, spaced(sensor).capitalize())
-
-
-def body_motion(runs: list[Shown], body: str) -> Iterator[tuple[str, Any]]:
-    """Position and velocity of a body, the components that change; for runs without sensors."""
-    channels = [c for c in (f"{body}.position", f"{body}.velocity") if some(runs, c)]
-    if not channels:
-        return
-    figure, axes = panels(len(channels), height=1.9, sharex=True)
-    for row, channel in enumerate(channels):
-        a = axes[row, 0]
-        for k, shown in enumerate(some(runs, channel)):
-            values = shown.values(channel)
-            for c in np.flatnonzero(np.ptp(values, axis=0) > 0.0).tolist():
-                label = f"{'xyz'[c]}  {shown.label}".strip()
-                a.plot(*thinned(shown.time, values[:, c]), color=colour(3 * k + c), label=label)
-        a.set_ylabel(f"{channel.split('.')[1]} ({some(runs, channel)[0].unit(channel)})")
-        a.margins(x=0.01)
-    axes[-1, 0].set_xlabel(runs[0].time_label)
-    axes[0, 0].legend(loc="best")
-    figure.align_ylabels()
-    titled(figure, runs, spaced(body).capitalize())
-    yield f"body_{body}", figure
 
 
 def drive_force(runs: list[Shown], drive: str) -> Any:

@@ -11,11 +11,13 @@ from trsim.report.spectra import label
 
 
 def draw(runs: list[Shown], words: list[str], folder: Path) -> Found:
-    """numbers.csv: a line for each run and word, in SI units."""
+    """numbers.csv: a line for each run and word, in SI units or in those asked for."""
     found = nothing()
     for shown in runs:
         for word in words:
-            value, unit = scalar(shown.run, word)
+            value, si = scalar(shown.run, word)
+            factor, unit = shown.told(si)
+            value *= factor
             found.values.append(Value(label(shown), word, value, np.nan, unit))
             found.lines.append(f"{label(shown)}: {word} = {value:.6g} {unit}".rstrip(" -"))
     rows = [(one.run, one.what, one.value, one.unit) for one in found.values]

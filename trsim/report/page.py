@@ -57,12 +57,13 @@ class Points(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """A figure with its caption, and where it is spoken of: (text, anchor)."""
+    """A figure, PNG or SVG, with its caption, and where it is spoken of: (text, anchor)."""
 
     anchor: str
     file: Path
     caption: str
     links: Sequence[tuple[str, str]] = ()
+    data: bytes | None = None  # a PNG in place of the file, which a browser would not show
 
 
 class Cell(NamedTuple):
@@ -155,12 +156,14 @@ def markup(block: Block) -> str:
 
 
 def picture(block: Picture) -> str:
-    data = base64.b64encode(block.file.read_bytes()).decode("ascii")
+    read = block.data or block.file.read_bytes()
+    kind = "svg+xml" if block.file.suffix == ".svg" and not block.data else "png"
+    data = base64.b64encode(read).decode("ascii")
     links = ", ".join(f'<a href="#{anchor}">{escaped(text)}</a>' for text, anchor in block.links)
     about = f' <span class="aside">Claims: {links}</span>' if links else ""
     alt = escaped(block.caption)
     return (
-        f'<figure id="{block.anchor}"><img alt="{alt}" src="data:image/png;base64,{data}">\n'
+        f'<figure id="{block.anchor}"><img alt="{alt}" src="data:image/{kind};base64,{data}">\n'
         f"<figcaption>{alt}{about}</figcaption></figure>\n"
     )
 

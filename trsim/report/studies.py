@@ -1,5 +1,6 @@
 """The figures of a study: chosen numbers over what was swept, and what else is asked of it."""
 
+from collections.abc import Mapping
 from itertools import chain, groupby
 from pathlib import Path
 from typing import Any
@@ -34,13 +35,13 @@ from trsim.statuses import WELL
 SERIES = 8  # curves of a family that have a line in the legend
 
 
-def shown(study: Any) -> Shown:
+def shown(study: Any, asked: Mapping[str, tuple[float, str]] | None = None) -> Shown:
     """A run of the study, for its units; raises UsageError or FileError where none can be read."""
     wrong: UsageError | FileError = no_result()
     for case in study.cases:
         if case.status in WELL:
             try:
-                return compared([case.run()])[0]
+                return compared([case.run()], asked)[0]
             except FileError as error:
                 wrong = error
     raise wrong
@@ -51,9 +52,18 @@ def units(study: Any) -> Units:
     return Units(study.units, study.written)
 
 
-def draw(study: Any, asked: Asked, words: list[str], folder: Path) -> Found:
-    """What was asked for of a study; its chosen numbers where nothing was."""
-    one, found = shown(study), nothing()
+def draw(
+    study: Any,
+    asked: Asked,
+    words: list[str],
+    folder: Path,
+    chosen: Mapping[str, tuple[float, str]] | None = None,
+) -> Found:
+    """What was asked for of a study; its chosen numbers where nothing was.
+
+    chosen: units in place of SI ones.
+    """
+    one, found = shown(study, chosen), nothing()
     if not any((words, asked.bifurcation, asked.sobol, asked.map, asked.bars, asked.envelope)):
         words = usual(one)
     bars = [parted_words([text]) for text in asked.bars]
@@ -99,14 +109,18 @@ def outputs(study: Any, one: Shown, of: list[Numbers], over: str | None, folder:
     """sweep.csv, and a figure of each number over what was swept."""
     found, names = nothing(), [case.name for case in study.cases]
     keys = drawn_over(study, over)
+    units_of = {each.word: one.told(each.unit) for each in of}
     found.values.extend(
-        Value(n, each.word, each.values[n], np.nan, each.unit) for each in of for n in names
+        Value(n, each.word, each.values[n] * factor, np.nan, text)
+        for each in of
+        for factor, text in [units_of[each.word]]
+        for n in names
     )
     titles = ["case", "status", *(f"{k} [{study.units.get(k, '-')}]" for k in study.keys)]
-    titles += [f"{each.word} [{each.unit}]" for each in of]
+    titles += [f"{each.word} [{units_of[each.word][1]}]" for each in of]
     rows = [
         (case.name, case.status, *(case.values.get(key, "") for key in study.keys),
-         *(each.values[case.name] for each in of))
+         *(each.values[case.name] * units_of[each.word][0] for each in of))
         for case in study.cases
     ]  # fmt: skip
     found.files.append(table(folder / "sweep.csv", titles, rows))

@@ -1,16 +1,21 @@
 """The look of all figures: sizes for print, light grid, colours that survive a photocopier."""
 
+import io
+import re
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from trsim.arrays import Array
+from trsim.errors import FileError, UsageError, unreadable
 from trsim.report.defaults import Figure, FigureCanvasAgg, matplotlib
 from trsim.report.display import Shown
-from trsim.store.target import FIGURE, file_errors, fresh
+from trsim.report.looks import DOTS, Looks, inches
+from trsim.store.target import FIGURES, file_errors, fresh
 
 CHARACTER = 0.085  # inch: a letter of a title
 WIDTH = 6.3  # inch: the text width of an A4 page
@@ -39,32 +44,128 @@ RC: Any = {
     "ytick.labelsize": 8,
     "figure.constrained_layout.h_pad": 0.06,
     "agg.path.chunksize": 10000,
+    "svg.hashsalt": "trsim",
+    "pdf.fonttype": 42,
 }
+SLIDES = Looks(size="118", dpi=300)  # smaller, so that letters and lines are larger in it
+ABOUT: dict[str, Any] = {
+    "png": {"Software": "trsim"},
+    "pdf": {"Creator": "trsim", "Producer": None, "CreationDate": None},
+    "svg": {"Creator": "trsim", "Date": None},
+}
+MANY = 20_000  # points of a curve that stays a picture in a PDF or SVG
+
+
+class Sheet(NamedTuple):
+    """What figures are made as: settings beside RC, colours, kind of file, inches, dots an inch."""
+
+    rc: dict[str, Any] = {}  # noqa: RUF012
+    colours: tuple[str, ...] = COLOURS
+    form: str = "png"
+    size: tuple[float, float | None] | None = None
+    dpi: int = DPI
+    shots: dict[Path, bytes] = {}  # noqa: RUF012  figures that a page cannot show, as PNG
+
+
+_sheets = [Sheet()]  # the last one is at work
+
+
+@contextmanager
+def asked(looks: Looks) -> Iterator[Sheet]:
+    """Figures are made as asked for.  Raises UsageError, FileError for what cannot be."""
+    _sheets.append(sheet(looks))
+    try:
+        yield _sheets[-1]
+    finally:
+        _sheets.pop()
+
+
+def sheet(looks: Looks) -> Sheet:
+    rc: dict[str, Any] = {}
+    usual = SLIDES if looks.style == "slides" else Looks()
+    if looks.style not in ("", "slides"):
+        rc = of_file(looks.style)
+    dpi = looks.dpi or usual.dpi or DPI
+    if not DOTS[0] <= dpi <= DOTS[1]:
+        raise UsageError(f"{dpi} dots per inch are no figure", f"Give {DOTS[0]} to {DOTS[1]}.")
+    colours = rc["axes.prop_cycle"].by_key().get("color") if "axes.prop_cycle" in rc else None
+    return Sheet(
+        rc, tuple(colours or COLOURS), looks.form, inches(looks.size or usual.size), dpi, {}
+    )
+
+
+def of_file(name: str) -> dict[str, Any]:
+    """The settings of a style file of matplotlib: KEY: VALUE, a line each."""
+    path = Path(name)
+    if path.suffix != ".mplstyle":
+        what = f"no style named '{name}'"
+        raise UsageError(what, "Say slides, or name a style file of matplotlib, NAME.mplstyle.")
+    if (missing := unreadable(path)) is not None:
+        raise missing
+    found: dict[str, Any] = {}
+    known = set(matplotlib.rcParams)
+    for number, line in enumerate(
+        path.read_text(encoding="utf-8", errors="replace").split("\n"), 1
+    ):
+        text = re.sub(r"(^|\s)#.*", "", line).strip()
+        key, colon, value = (part.strip() for part in text.partition(":"))
+        if not text:
+            continue
+        if not colon or key not in known or key.startswith("backend"):
+            raise FileError(f"{name}:{number}: no setting of a figure: {text[:60]}", file=name)
+        try:
+            found[key] = matplotlib.RcParams({key: value})[key]
+        except ValueError as error:
+            raise FileError(f"{name}:{number}: {str(error)[:200]}", file=name) from None
+    return found
 
 
 def look() -> Any:
     """A context in which figures are made and saved."""
-    return matplotlib.rc_context(RC)
+    return matplotlib.rc_context(RC | _sheets[-1].rc)
 
 
 def colour(k: int) -> str:
-    return COLOURS[k % len(COLOURS)]
+    colours = _sheets[-1].colours
+    return colours[k % len(colours)]
 
 
 def panels(
-    rows: int, columns: int = 1, height: float = 2.0, width: float = WIDTH, **options: Any
-) -> tuple[Figure, Any]:
-    """A figure and its axes, (rows, columns)."""
-    figure = Figure(figsize=(width, rows * height + 0.4), dpi=DPI, layout="constrained")
+    rows: int, columns: int = 1, height: float = 2.0, width: float = WIDTH, *,
+    table: bool = False, **options: Any,
+) -> tuple[Figure, Any]:  # fmt: skip
+    """A figure and its axes, (rows, columns).
+
+    table: of text, which needs its room whatever size is asked for.
+    """
+    sheet, size = _sheets[-1], (width, rows * height + 0.4)
+    if sheet.size and not table:
+        size = sheet.size[0], sheet.size[1] or size[1]
+    figure = Figure(figsize=size, dpi=sheet.dpi, layout="constrained")
     FigureCanvasAgg(figure)
     return figure, figure.subplots(rows, columns, squeeze=False, **options)
 
 
 def save(figure: Figure, path: Path) -> Path:
-    """Write the PNG, without anything that changes from day to day."""
-    with file_errors(path), fresh(path, FIGURE) as unfinished:
-        figure.savefig(unfinished, format="png", metadata={"Software": "trsim"})
+    """Write the picture, without anything that changes from day to day; its name."""
+    form = _sheets[-1].form
+    path = path.with_suffix(f".{form}")
+    if form == "pdf":
+        shot = io.BytesIO()
+        figure.savefig(shot, format="png", metadata=ABOUT["png"])
+        _sheets[-1].shots[path] = shot.getvalue()
+    if form != "png":
+        sharp(figure)
+    with file_errors(path), fresh(path, FIGURES[form]) as unfinished:
+        figure.savefig(unfinished, format=form, metadata=ABOUT[form])
     return path
+
+
+def sharp(figure: Figure) -> None:
+    """Curves as lines, which may be enlarged, unless they have very many points."""
+    for line in figure.findobj(matplotlib.lines.Line2D):
+        if np.size(line.get_xdata()) < MANY:
+            line.set_rasterized(False)
 
 
 def draw(path: Path, make: Callable[..., Figure], *given: Any, **options: Any) -> Path:

@@ -109,7 +109,7 @@ def picture(runs: list[Shown], loads: list[Load]) -> Any:
     second = runs[0].display("s")
     head, cells = columns(runs, loads, second) if len(runs) > 1 else lines(loads, second)
     width = max(WIDTH, 2.6 + 1.6 * len(runs))
-    figure, axes = panels(1, height=0.22 * (len(cells) + 1) + 0.4, width=width)
+    figure, axes = panels(1, height=0.22 * (len(cells) + 1) + 0.4, width=width, table=True)
     a = axes[0, 0]
     a.axis("off")
     a.set_title("of the motion, between steps and rows too", fontsize=8)

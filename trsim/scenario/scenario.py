@@ -242,7 +242,7 @@ class Scenario(Spec):
                      ends it
     cases            named overrides, each a scenario of a sweep; not used by `run`
     sweep            values of keys to vary, by dotted path; not used by `run`
-    report           units of figures and tables: `units: {angle: deg, length: mm}`
+    report           units of figures and tables: `units: {angle: deg, speed: rpm}`
     """
 
     title: str = ""

@@ -5,7 +5,22 @@ from typing import Any
 from trsim.errors import ScenarioError, check_keys, described
 from trsim.units import unit
 
-UNITS = {"angle": "rad", "length": "m", "force": "N", "torque": "N*m"}  # what a choice replaces
+# what a choice replaces: the one that has the dimension of the unit that is chosen
+UNITS: dict[str, tuple[str, ...]] = {
+    "angle": ("rad",),
+    "length": ("m",),
+    "time": ("s",),
+    "mass": ("kg",),
+    "speed": ("m/s", "rad/s"),
+    "acceleration": ("m/s^2", "rad/s^2"),
+    "angular_speed": ("rad/s",),
+    "angular_acceleration": ("rad/s^2",),
+    "force": ("N",),
+    "torque": ("N*m",),
+    "energy": ("J",),
+    "power": ("W",),
+    "frequency": ("1/s",),
+}
 
 
 def report(given: dict[str, Any]) -> dict[str, Any]:
@@ -21,12 +36,23 @@ def report(given: dict[str, Any]) -> dict[str, Any]:
         check_keys([key], UNITS, "units")
         if not isinstance(text, str):
             what = f"must be a unit, got {described(text)}"
-            raise ScenarioError(what, f"For example {UNITS[key]}.", ("units", key))
+            raise ScenarioError(what, f"For example {UNITS[key][0]}.", ("units", key))
         try:
-            same = unit(text)[1] == unit(UNITS[key])[1]
+            replaced(key, text)
         except ScenarioError as error:
             raise error.at("units", key) from None
-        if not same:
-            what = f"{described(text)} is no unit of {key}"
-            raise ScenarioError(what, f"It is shown in units of {UNITS[key]}.", ("units", key))
     return given
+
+
+def replaced(key: str, text: str) -> str:
+    """The SI unit in place of which a kind of quantity is shown in a unit.
+
+    Raises ScenarioError for what is no unit of that kind.
+    """
+    check_keys([key], UNITS)
+    dimension = unit(text)[1]
+    for si in UNITS[key]:
+        if unit(si)[1] == dimension:
+            return si
+    what = f"{described(text)} is no unit of {key}"
+    raise ScenarioError(what, f"It is shown in units of {' or '.join(UNITS[key])}.")

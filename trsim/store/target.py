@@ -29,6 +29,7 @@ class Kind(NamedTuple):
 
     name: str
     fits: Callable[[bytes], bool]  # the beginning of a file
+    at_end: bool = False  # ... or the last bytes of it
 
 
 def _is_result(start: bytes) -> bool:
@@ -45,12 +46,13 @@ def _is_part(start: bytes) -> bool:
 def _is_table(start: bytes) -> bool:
     """Titles with units, and numbers written in full, as `export` writes them."""
     titles, *rows = start.split(b"\r\n")
-    if not titles.startswith((b"time [s],", b"time [s]")) or not rows:
+    between = b"\t" if titles.startswith(b"time [s]\t") else b","
+    if not titles.startswith((b"time [s]" + between, b"time [s]")) or not rows:
         return False
-    if any(not title.strip(b'"').endswith(b"]") for title in titles.split(b",")):
+    if any(not title.strip(b'"').endswith(b"]") for title in titles.split(between)):
         return False
     try:
-        return not rows[0] or all(repr(float(x)) == x.decode() for x in rows[0].split(b","))
+        return not rows[0] or all(repr(float(x)) == x.decode() for x in rows[0].split(between))
     except ValueError:
         return False
 
@@ -65,6 +67,14 @@ def _is_schema(start: bytes) -> bool:
 
 def _is_figure(start: bytes) -> bool:
     return start.startswith(b"\x89PNG") and b"Software\0trsim" in start[:HEADER]
+
+
+def _is_pdf(end: bytes) -> bool:
+    return b"/Creator (trsim)" in end and b"%%EOF" in end
+
+
+def _is_svg(start: bytes) -> bool:
+    return start.startswith(b"<?xml") and b"<dc:title>trsim</dc:title>" in start[:HEADER]
 
 
 def headed(*titles: str) -> Kind:
@@ -90,6 +100,11 @@ LOCK = Kind("lock of trsim", _is_lock)
 TABLE = Kind("table that `trsim export` wrote", _is_table)
 SCHEMA = Kind("schema of trsim", _is_schema)
 FIGURE = Kind("figure of trsim", _is_figure)
+FIGURES = {
+    "png": FIGURE,
+    "pdf": Kind("figure of trsim", _is_pdf, at_end=True),
+    "svg": Kind("figure of trsim", _is_svg),
+}
 
 
 def replaceable(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> Path:
@@ -109,6 +124,8 @@ def replaceable(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = (
         if not found.st_mode & 0o222 or not os.access(target, os.W_OK):
             raise FileError(f"{target} is write-protected", ELSEWHERE)
         with target.open("rb") as file:
+            if kind.at_end:
+                file.seek(max(found.st_size - BEGINNING, 0))
             start = file.read(BEGINNING)
     if start and not kind.fits(start):
         raise UsageError(f"{target} exists and is not a {kind.name}", ELSEWHERE)

@@ -125,6 +125,7 @@ class Show(Document, Result):
     poincare        section -> number of points
     dispersion      section -> how far its points lie apart
     certificate     what a twin says of the run, where it had one
+    values          the numbers that were asked for
     """
 
     format: str
@@ -141,6 +142,7 @@ class Show(Document, Result):
     poincare: dict[str, int]
     dispersion: dict[str, of(Dispersion)]
     certificate: NotRequired[Certificate]
+    values: NotRequired[list[of(Value)]]
 
 
 class Report(Document):
@@ -162,7 +164,7 @@ class Export(Document):
     """trsim export.
 
     file      written
-    rows      lines after the first
+    rows      lines after the first, or frames
     channels  columns after the time; components of vectors are NAME.x, NAME.y, NAME.z
     """
 
