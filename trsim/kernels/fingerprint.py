@@ -48,9 +48,14 @@ class Told(NamedTuple):
     reached: tuple[FunctionType, ...]
 
 
-def of(python: Callable, signature: Signature) -> str:
-    """The key of a function with a signature."""
-    parts = (_surroundings(), repr(signature), _function(python).digest)
+def of(python: Callable, signature: Signature, surroundings: str | None = None) -> str:
+    """The key of a function with a signature.
+
+    surroundings: in place of this compiler, its settings and this processor; whoever gives them
+    answers for these (carried.py).
+    """
+    around = _surroundings() if surroundings is None else surroundings
+    parts = (around, repr(signature), _function(python).digest)
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:LENGTH]
 
 
@@ -74,16 +79,25 @@ def _surroundings() -> str:
     import llvmlite.binding as llvm
     import numpy as np
 
+    versions = sys.version, np.__version__, version("numba"), llvmlite.__version__
+    processor = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+    return repr((how(), settings(), versions, llvm.llvm_version_info, processor))
+
+
+@cache
+def how() -> str:
+    """What of this package decides how code is made."""
     package = Path(__file__).parents[1]
     files = [_digest((package / name).read_bytes()) for name in COMPILER]
-    settings = sorted(
+    return _digest(repr((files, COMPILED, UNWRAPPED)).encode())
+
+
+def settings() -> list[tuple[str, str]]:
+    """Variables of the environment that numba reads."""
+    return sorted(
         (name, value) for name, value in os.environ.items()
         if name.startswith("NUMBA_") and name != "NUMBA_NUM_THREADS"  # nothing is parallel
     )  # fmt: skip
-    versions = sys.version, np.__version__, version("numba"), llvmlite.__version__
-    processor = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
-    options = COMPILED, UNWRAPPED
-    return repr((files, options, settings, versions, llvm.llvm_version_info, processor))
 
 
 _open: list[Callable] = []  # whose digests are being made
