@@ -76,9 +76,15 @@ truth: .venv/developer
 	$(BIN)/python -m tests.truth
 	$(BIN)/python -m tests.truth --table
 
-# a wheel that compiles nothing on common processors; goes on where it was ended
+# a wheel that compiles nothing on common processors, for this Python and others, as in
+# make wheel PYTHONS="python3.12 python3.13"; goes on where it was ended
 wheel: .venv/installed
 	$(BIN)/python -m trsim.kernels.carry build/carried
+	for python in $(PYTHONS); do \
+	  $$python -m venv build/$$python && \
+	  build/$$python/bin/python -m pip install --quiet --editable . && \
+	  build/$$python/bin/python -m trsim.kernels.carry --keys build/carried || exit 1; \
+	done
 	TRSIM_CARRIED=build/carried $(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist .
 
 # faults put into the sources, and those that no test notices; goes on where it was ended

@@ -15,7 +15,7 @@ from tests.kernels.test_machine import TOTAL, arguments, expected, total
 from trsim.assemble.assemble import assemble
 from trsim.kernels import carried, carry, fingerprint, kept, machine
 from trsim.kernels.columns import Columns
-from trsim.kernels.lazy import PYTHON
+from trsim.kernels.lazy import PYTHON, internal
 from trsim.kernels.machine import Compiled
 from trsim.kernels.packed import A2, Packed
 from trsim.kernels.signatures import f8, float64, i8
@@ -139,12 +139,10 @@ def test_another_layout_is_other_sources(place):
 
 
 def rewrite(path, change):
-    """Change the index of a file, digest and all."""
-    _, line, rest = path.read_bytes().split(b"\n", 2)
-    index = json.loads(line)
-    change(index)
-    line = json.dumps(index).encode()
-    path.write_bytes(b"\n".join((carried._digest(line), line, rest)))
+    """Change what a file says of itself, digest and all."""
+    told, begin = carried.index(path)
+    change(told)
+    carried.write(path, told, path.read_bytes()[begin:])
     carried._chosen.cache_clear()
 
 
@@ -274,6 +272,61 @@ def test_a_part_that_is_damaged_is_made_again(place):
     carry_some(place, Compiled(total, TOTAL))
     carried._chosen.cache_clear()
     assert carried.code(total, TOTAL) == carried.opened(part.read_bytes()) is not None
+
+
+def test_another_python_finds_the_same_code_by_keys_of_its_own(place, monkeypatch):
+    [path] = carry_some(place, Compiled(total, TOTAL), Compiled(other, TOTAL))
+    whole = carried.code(total, TOTAL)
+    monkeypatch.setattr(carried, "python", lambda: "cpython 3.99")
+    carried._chosen.cache_clear()
+    assert carried.code(total, TOTAL) is None
+    carry.add_keys([Compiled(other, TOTAL), Compiled(total, TOTAL)], path)
+    carried._chosen.cache_clear()
+    assert carried.code(total, TOTAL) == whole is not None
+    monkeypatch.undo()
+    monkeypatch.setattr(carried, "FOLDER", place)
+    carried._chosen.cache_clear()
+    assert carried.code(total, TOTAL) == whole
+
+
+def test_no_keys_are_added_for_other_sources(place, monkeypatch):
+    """Bytecode of an edited function would find the machine code it had before."""
+    [path] = carry_some(place, Compiled(total, TOTAL))
+    before = path.read_bytes()
+    with pytest.raises(ValueError, match="other sources"):
+        carry.add_keys([Compiled(other, TOTAL)], path)
+    monkeypatch.setattr(carry, "sources", lambda: "edited")
+    with pytest.raises(ValueError, match="other sources"):
+        carry.add_keys([Compiled(total, TOTAL)], path)
+    assert path.read_bytes() == before
+
+
+def closed(numbers):
+    """Functions of one place that differ by what is in their cells."""
+
+    def of(n, inside):
+        def f(x):
+            return inside(x) + n
+
+        return f
+
+    def one(x):
+        return x
+
+    def two(x):
+        return 2.0 * x
+
+    return [of(n, internal(g)) for n in numbers for g in (one, two)]
+
+
+def test_marks_tell_functions_apart_as_keys_do(monkeypatch):
+    found = closed([1, 2])
+    marks = [fingerprint.mark(f, float64(f8)) for f in found]
+    assert len(set(marks)) == 4 and marks == [
+        fingerprint.mark(f, float64(f8)) for f in closed([1, 2])
+    ]
+    ours = carry.functions()
+    assert len({carry._mark(one) for one in ours}) == len(ours)
 
 
 def test_functions_are_all_there_before_a_scenario_is_read():

@@ -121,17 +121,19 @@ def opened(content: bytes) -> tuple[str, bytes] | None:
     return (symbol.decode(), objects) if ends and _digest(rest) == digest else None
 
 
-def written(path: Path, made: dict[str, Any], keys: dict[str, str], pieces: list[bytes]) -> None:
-    """Write what is carried for a processor; keys: of each piece, with its name."""
-    packed, places, at = [zlib.compress(piece, 9) for piece in pieces], list[Any](), 0
-    for piece in packed:
-        places.append([at, len(piece)])
-        at += len(piece)
-    own = {one: k for k, one in enumerate(keys)}
-    told = {"for": made, "keys": {python(): own}, "names": [*keys.values()], "places": places}
-    index = json.dumps(told).encode()
-    part = path.with_name(f"{path.name}.{os.getpid()}")
-    part.write_bytes(b"\n".join((_digest(index), index, b"".join(packed))))
+def index(path: Path) -> tuple[dict[str, Any], int]:
+    """What a file says of itself, and where its code begins.  Raises one of DAMAGED."""
+    with open(path, "rb") as file:
+        digest, line = file.readline().strip(), file.readline()[:-1]
+        if _digest(line) != digest:
+            raise ValueError
+        return json.loads(line), file.tell()
+
+
+def write(path: Path, told: dict[str, Any], code: bytes) -> None:
+    """Write a file: what it says of itself, and its code."""
+    line, part = json.dumps(told).encode(), path.with_name(f"{path.name}.{os.getpid()}")
+    part.write_bytes(b"\n".join((_digest(line), line, code)))
     os.replace(part, path)
 
 
@@ -158,18 +160,15 @@ def _chosen(folder: Path) -> tuple[Set | None, str]:
 def _looked_at(path: Path, target: str) -> tuple[Set | None, str]:
     """A set that can be used here, or why not."""
     try:
-        with open(path, "rb") as file:
-            digest, line = file.readline().strip(), file.readline()[:-1]
-            if _digest(line) != digest:
-                return None, f"{path.name} is damaged"
-            index, begin = json.loads(line), file.tell()
-    except DAMAGED as error:
-        return None, f"{path.name} cannot be read: {error}"
-    why = unfit(index["for"], target)
-    keys = index["keys"].get(python())
-    if not why and keys is None:
-        why = f"it is for {' and '.join(index['keys'])}, this is {python()}"
-    return (None, why) if why else (Set(path, keys, index["names"], index["places"], begin), "")
+        told, begin = index(path)
+        keys = told["keys"].get(python())
+        why = unfit(told["for"], target)
+        if not why and keys is None:
+            why = f"it is for {' and '.join(told['keys'])}, this is {python()}"
+        found = Set(path, keys, told["names"], told["places"], begin)
+    except DAMAGED:
+        return None, f"{path.name} is damaged"
+    return (None, why) if why else (found, "")
 
 
 def unfit(made: dict[str, Any], target: str) -> str:

@@ -3,13 +3,19 @@
     python -m trsim.kernels.carry FOLDER [TARGET ...]
 
 compiles every function of the package for every target, and writes FOLDER/TARGET.code.  What is
-done stands below FOLDER/parts: the same command goes on where it was ended.  `make wheel` puts the
-files into a wheel.
+done stands below FOLDER/parts: the same command goes on where it was ended.
+
+    python -m trsim.kernels.carry --keys FOLDER
+
+run by another version of Python, lets that version use the same files: machine code depends on
+sources alone, but its key on the bytecode that each version makes of them.  `make wheel` does both.
 """
 
+import hashlib
 import os
 import pkgutil
 import sys
+import zlib
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
@@ -29,7 +35,23 @@ def functions() -> list[Compiled]:
         for module in pkgutil.walk_packages([str(PACKAGE / room)], f"trsim.{room}."):
             import_module(module.name)
     ours = (one for one in machine.made if one.python.__module__.startswith("trsim."))
-    return list({carried.key(one.python, one.signature): one for one in ours}.values())
+    return list({_key(one): one for one in ours}.values())
+
+
+def _key(one: Compiled) -> str:
+    return carried.key(one.python, one.signature)
+
+
+def _mark(one: Compiled) -> str:
+    return fingerprint.mark(one.python, one.signature)
+
+
+def sources() -> str:
+    """A digest of all of the package's sources."""
+    told = hashlib.sha256()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        told.update(f"{path.relative_to(PACKAGE).as_posix()}\n".encode() + path.read_bytes())
+    return told.hexdigest()
 
 
 @cache
@@ -47,7 +69,8 @@ def processor(target: str) -> Any:
 
 def part(function: Compiled, target: str, folder: Path) -> bytes:
     """The code of one function for a target: as it was made before, or made now."""
-    path = folder / target / f"{carried.name(function.python)}-{function.key}{carried.ENDING}"
+    name = f"{carried.name(function.python)}-{function.key}{carried.ENDING}"
+    path = folder / target / name
     with suppress(OSError):
         content = path.read_bytes()
         if carried.opened(content):
@@ -65,23 +88,49 @@ def carry(wanted: list[Compiled], targets: tuple[str, ...], folder: Path) -> lis
     pieces: dict[str, list[bytes]] = {target: [] for target in targets}
     for k, function in enumerate(wanted, 1):
         for target in targets:
-            pieces[target].append(part(function, target, folder / "parts"))
+            pieces[target].append(zlib.compress(part(function, target, folder / "parts"), 9))
         print(f"\r{k} of {len(wanted)}", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
-    keys = {carried.key(one.python, one.signature): carried.name(one.python) for one in wanted}
+    told = {
+        "sources": sources(),
+        "keys": {carried.python(): {_key(one): k for k, one in enumerate(wanted)}},
+        "names": [carried.name(one.python) for one in wanted],
+        "marks": [_mark(one) for one in wanted],
+    }
     files = []
     for target in targets:
+        places, at = list[Any](), 0
+        for piece in pieces[target]:
+            places.append((at, len(piece)))
+            at += len(piece)
         files.append(folder / f"{target}{carried.ENDING}")
-        carried.written(files[-1], carried.made_for(target), keys, pieces[target])
+        own = {"for": carried.made_for(target), "places": places}
+        carried.write(files[-1], told | own, b"".join(pieces[target]))
     return files
+
+
+def add_keys(wanted: list[Compiled], path: Path) -> None:
+    """Let this version of Python use a file.  Raises ValueError where it was made of others."""
+    told, begin = carried.index(path)
+    at = {mark: k for k, mark in enumerate(told["marks"])}
+    marks = [_mark(one) for one in wanted]
+    if told["sources"] != sources() or set(marks) != at.keys() or len(at) != len(told["marks"]):
+        raise ValueError(f"{path} was made of other sources: make it again first")
+    own = {_key(one): at[mark] for one, mark in zip(wanted, marks, strict=True)}
+    code = path.read_bytes()[begin:]
+    carried.write(path, told | {"keys": told["keys"] | {carried.python(): own}}, code)
 
 
 def main() -> None:
     """Make what the command line names."""
-    if len(sys.argv) < 2 or not set(sys.argv[2:]) <= set(carried.TARGETS):
-        sys.exit(f"wanted: FOLDER [TARGET ...], targets are {' '.join(carried.TARGETS)}")
     if fingerprint.settings():
         sys.exit("variables of numba are set: what is carried is made without")
+    if len(sys.argv) == 3 and sys.argv[1] == "--keys":
+        for path in sorted(Path(sys.argv[2]).glob(f"*{carried.ENDING}")):
+            add_keys(functions(), path)
+        return
+    if len(sys.argv) < 2 or not set(sys.argv[2:]) <= set(carried.TARGETS):
+        sys.exit(f"wanted: FOLDER [TARGET ...], targets are {' '.join(carried.TARGETS)}")
     targets = tuple(sys.argv[2:]) or tuple(carried.TARGETS)
     for path in carry(functions(), targets, Path(sys.argv[1])):
         print(f"{path} {path.stat().st_size / 1e6:.1f} MB")

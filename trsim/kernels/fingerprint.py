@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from enum import Enum
 from functools import cache
 from opcode import opmap
+from operator import itemgetter
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, NamedTuple, NoReturn
@@ -56,6 +57,15 @@ def of(python: Callable, signature: Signature, surroundings: str | None = None) 
     """
     around = _surroundings() if surroundings is None else surroundings
     parts = (around, repr(signature), _function(python).digest)
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:LENGTH]
+
+
+def mark(python: Callable, signature: Signature) -> str:
+    """What a function is called whatever Python made its bytecode, as long as no source changes.
+
+    A key with the places of sources in place of bytecode.
+    """
+    parts = (repr(signature), _function(python, _place).digest)
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:LENGTH]
 
 
@@ -103,17 +113,38 @@ def settings() -> list[tuple[str, str]]:
 _open: list[Callable] = []  # whose digests are being made
 
 
+def _code(code: CodeType) -> str:
+    """Bytecode and constants, and how arguments are taken."""
+    constants = [_constant(c) for c in code.co_consts]
+    names = code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars
+    counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags
+    return repr((code.co_code.hex(), code.co_exceptiontable.hex(), constants, names, counts))
+
+
+def _place(code: CodeType) -> str:
+    """Where a function is written."""
+    package = Path(__file__).parents[1]
+    file = Path(code.co_filename)
+    inside = file.relative_to(package).as_posix() if file.is_relative_to(package) else file.name
+    return f"{inside} {code.co_firstlineno} {code.co_qualname}"
+
+
 @cache
-def _function(python: Any) -> Told:
-    """A function with everything it reads."""
+def _function(python: Any, told_of: Callable[[CodeType], str] = _code) -> Told:
+    """A function with everything it reads; told_of: what its own code is told by."""
     if python in _open:
         _refuse(python, python.__name__, "calls itself")
     _open.append(python)
     try:
         reached: list[FunctionType] = []
-        told = [_code(python.__code__)]
+
+        def function(one: Any) -> str:
+            reached.append(one)
+            return _function(one, told_of).digest
+
+        told = [told_of(python.__code__)]
         for path, value in _read(python):
-            told.append(f"{path} {_value(value, python, path, reached)}")
+            told.append(f"{path} {_value(value, python, path, function)}")
         return Told(_digest("\n".join(told).encode()), tuple(reached))
     finally:
         _open.pop()
@@ -131,7 +162,8 @@ def _read(python: Any) -> Iterator[tuple[str, Any]]:
         if isinstance(value, ModuleType):
             _refuse(python, ".".join(path), "is a module, read for other than a name in it")
         yield ".".join(path), value
-    for name, cell in zip(python.__code__.co_freevars, python.__closure__ or (), strict=True):
+    cells = zip(python.__code__.co_freevars, python.__closure__ or (), strict=True)
+    for name, cell in sorted(cells, key=itemgetter(0)):
         yield f"cell {name}", cell.cell_contents
     for k, default in enumerate(python.__defaults__ or ()):
         yield f"default {k}", default
@@ -187,14 +219,6 @@ def _after(operations: bytes, k: int) -> int:
     return k
 
 
-def _code(code: CodeType) -> str:
-    """Bytecode and constants, and how arguments are taken."""
-    constants = [_constant(c) for c in code.co_consts]
-    names = code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars
-    counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags
-    return repr((code.co_code.hex(), code.co_exceptiontable.hex(), constants, names, counts))
-
-
 def _constant(value: Any) -> str:
     if isinstance(value, CodeType):
         return _code(value)
@@ -204,8 +228,10 @@ def _constant(value: Any) -> str:
     return repr(sorted(map(_constant, value)) if isinstance(value, frozenset) else value)
 
 
-def _value(value: Any, python: Callable, path: str, reached: list[FunctionType]) -> str:
-    """Something a function reads, by its content; functions go on the list of those reached."""
+def _value(
+    value: Any, python: Callable, path: str, told: Callable[[FunctionType], str]
+) -> str:  # fmt: skip
+    """Something a function reads, by its content; functions by what is told of them."""
     kind = type(value)
     if kind in PLAIN:
         return f"{kind.__name__} {value!r}"
@@ -213,8 +239,7 @@ def _value(value: Any, python: Callable, path: str, reached: list[FunctionType])
         return repr(value.columns)
     if isinstance(value, Lazy) or (kind is FunctionType and not _name(value)):
         function: Any = value.python if isinstance(value, Lazy) else value
-        reached.append(function)
-        return _function(function).digest
+        return told(function)
     if hasattr(kind, "tobytes") and not value.dtype.hasobject:
         order = value.flags.c_contiguous, value.flags.f_contiguous
         if not any(order) or value.nbytes > LARGEST:
@@ -224,8 +249,8 @@ def _value(value: Any, python: Callable, path: str, reached: list[FunctionType])
         return f"{value.dtype.str} {value.shape} {order} {_digest(value.tobytes())}"
     parts = _parts(value)
     if parts is not None:
-        told = [_value(part, python, path, reached) for part in parts]
-        return f"{kind.__qualname__} {getattr(kind, '_fields', '')} ({','.join(told)})"
+        each = [_value(part, python, path, told) for part in parts]
+        return f"{kind.__qualname__} {getattr(kind, '_fields', '')} ({','.join(each)})"
     signature = getattr(value, "signature", None)
     if isinstance(signature, Signature):  # a machine.Caller: its code is made of this alone
         return repr(signature)
