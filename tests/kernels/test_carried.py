@@ -254,6 +254,16 @@ def test_every_bit_of_what_is_packed_counts(place):
         assert carried.code(total, TOTAL) in (None, whole)
 
 
+def test_code_of_another_function_is_not_taken_for_it(place):
+    """As where a file is exchanged under a process that has read its index."""
+    [path] = carry_some(place, Compiled(total, TOTAL), Compiled(other, TOTAL))
+    assert carried.code(total, TOTAL)
+    rewrite(path, lambda told: told["places"].__setitem__(0, told["places"][1]))
+    assert "other" in carried.code(total, TOTAL)[0]  # who writes the index is believed
+    carried._chosen(place)[0].places[0][2] = "0" * 64
+    assert carried.code(total, TOTAL) is None
+
+
 # --- making --------------------------------------------------------------------------------------
 
 

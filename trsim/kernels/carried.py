@@ -3,8 +3,8 @@
 A first run then compiles nothing and does not import numba.  There is one file for each processor:
 
     digest of the next line
-    index: what the code was made for, the key of each function, where its code stands
-    code of one function after another, each packed, with a digest of its own
+    index: what the code was made for, the key of each function, where its code stands, its digest
+    code of one function after another, packed
 
 Of a file nothing is used unless it was made for this system, for a processor that has no more than
 this one, by the same files of this package, for this version of Python, and called as the numba
@@ -45,7 +45,7 @@ class Set(NamedTuple):
     path: Path
     keys: dict[str, int]  # of functions: which of the places
     names: list[str]  # of the functions
-    places: list[list[int]]  # in the file: first byte, and how many
+    places: list[tuple[int, int, str]]  # in the file: first byte, and how many; digest
     begin: int  # of the first one
 
 
@@ -88,9 +88,10 @@ def code(function: Callable, signature: Signature) -> tuple[str, bytes] | None:
         return None
     found = None
     with suppress(*DAMAGED), open(there.path, "rb") as file:
-        begin, size = there.places[at]
+        begin, size, digest = there.places[at]
         file.seek(there.begin + begin)
-        found = opened(zlib.decompress(file.read(size)))
+        content = zlib.decompress(file.read(size))
+        found = opened(content) if content.startswith(digest.encode()) else None
     if found is None:
         _told.append(f"{there.path.name} is damaged")
     return found

@@ -88,7 +88,7 @@ def carry(wanted: list[Compiled], targets: tuple[str, ...], folder: Path) -> lis
     pieces: dict[str, list[bytes]] = {target: [] for target in targets}
     for k, function in enumerate(wanted, 1):
         for target in targets:
-            pieces[target].append(zlib.compress(part(function, target, folder / "parts"), 9))
+            pieces[target].append(part(function, target, folder / "parts"))
         print(f"\r{k} of {len(wanted)}", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
     told = {
@@ -99,13 +99,13 @@ def carry(wanted: list[Compiled], targets: tuple[str, ...], folder: Path) -> lis
     }
     files = []
     for target in targets:
-        places, at = list[Any](), 0
-        for piece in pieces[target]:
-            places.append((at, len(piece)))
-            at += len(piece)
+        places, packed, at = list[Any](), [zlib.compress(piece, 9) for piece in pieces[target]], 0
+        for piece, small in zip(pieces[target], packed, strict=True):
+            places.append((at, len(small), piece.split(b"\n", 1)[0].decode()))
+            at += len(small)
         files.append(folder / f"{target}{carried.ENDING}")
         own = {"for": carried.made_for(target), "places": places}
-        carried.write(files[-1], told | own, b"".join(pieces[target]))
+        carried.write(files[-1], told | own, b"".join(packed))
     return files
 
 
