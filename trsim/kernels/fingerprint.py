@@ -28,8 +28,8 @@ from trsim.kernels.signatures import Signature
 LENGTH = 20  # hexadecimal digits
 CACHE, EXTENDED_ARG = opmap["CACHE"], opmap["EXTENDED_ARG"]
 LOAD_GLOBAL, LOAD_ATTR = opmap["LOAD_GLOBAL"], opmap["LOAD_ATTR"]
-LOAD_METHOD = opmap.get("LOAD_METHOD", LOAD_ATTR)  # until Python 3.11
-ATTRIBUTE_SHIFT = 0 if "LOAD_METHOD" in opmap else 1  # since 3.12 the last bit tells a method
+LOAD_METHOD = LOAD_ATTR if sys.version_info >= (3, 12) else opmap["LOAD_METHOD"]
+ATTRIBUTE_SHIFT = int(LOAD_METHOD == LOAD_ATTR)  # since 3.12 the last bit tells a method
 # the package's own files that decide what a function becomes
 COMPILER = (
     "kernels/columns.py", "kernels/compiler.py", "kernels/fingerprint.py", "kernels/lazy.py",
@@ -194,8 +194,7 @@ def _globals(code: CodeType, scope: dict[str, Any]) -> Iterator[tuple[str, ...]]
                 if operations[at] not in (LOAD_ATTR, LOAD_METHOD):
                     break
                 argument = _argument(operations, arguments, at)
-                shift = 0 if operations[at] == LOAD_METHOD != LOAD_ATTR else ATTRIBUTE_SHIFT
-                path += (code.co_names[argument >> shift],)
+                path += (code.co_names[argument >> ATTRIBUTE_SHIFT],)
                 value = getattr(value, path[-1])
             yield path
         k = operations.find(LOAD_GLOBAL, k + 1)
