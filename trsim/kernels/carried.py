@@ -26,8 +26,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from trsim.kernels import fingerprint
-from trsim.kernels.lazy import KNOWN
-from trsim.kernels.signatures import Signature
+from trsim.kernels.signatures import KNOWN, Signature
 
 FOLDER = Path(__file__).parents[1] / "carried"
 ENDING = ".code"

@@ -12,7 +12,6 @@ from typing import Any
 PYTHON = os.environ.get("TRSIM_PYTHON") == "1"
 # as in numpy x / 0 is inf; no reference counts: nothing compiled allocates
 COMPILED = {"error_model": "numpy", "_nrt": False}
-KNOWN = range(62, 69)  # numba 0.62 to 0.68: what pipeline.py takes of its inside, how it calls
 UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # not for Python to call
 
 

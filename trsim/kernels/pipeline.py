@@ -49,7 +49,7 @@ from numba.core.untyped_passes import (
 )
 from numba.np import arrayobj
 
-from trsim.kernels.lazy import KNOWN
+from trsim.kernels.signatures import KNOWN
 
 if numba.version_info[:2] not in {(0, minor) for minor in KNOWN}:
     raise ImportError(f"numba {numba.__version__} is not among the versions known here")
