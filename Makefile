@@ -5,7 +5,7 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo paper door tolerances gallery test release-check coverage portable lint bench stress truth mutants clean
+.PHONY: demo paper door tolerances gallery test release-check coverage portable lint bench stress truth mutants wheel clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -79,6 +79,17 @@ stress: .venv/developer
 truth: .venv/developer
 	$(BIN)/python -m tests.truth
 	$(BIN)/python -m tests.truth --table
+
+# a wheel that compiles nothing on common processors, for this Python and others, as in
+# make wheel PYTHONS="python3.12 python3.13"; goes on where it was ended
+wheel: .venv/installed
+	$(BIN)/python -m trsim.kernels.carry build/carried
+	for python in $(PYTHONS); do \
+	  $$python -m venv build/$$python && \
+	  build/$$python/bin/python -m pip install --quiet --editable . && \
+	  build/$$python/bin/python -m trsim.kernels.carry --keys build/carried || exit 1; \
+	done
+	TRSIM_CARRIED=build/carried $(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir dist .
 
 # faults put into the sources, and those that no test notices; goes on where it was ended
 mutants: .venv/developer

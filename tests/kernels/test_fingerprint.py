@@ -117,15 +117,15 @@ def told(monkeypatch):
     """told(kernel, edited): the digest in its key; what reaches `edited` is read again."""
     kept, whole = {}, fingerprint._function.__wrapped__
 
-    def remembered(python):
+    def remembered(python, told_of):
         if python not in kept:
-            kept[python] = whole(python)
+            kept[python] = whole(python, told_of)
         return kept[python]
 
     def key(kernel, edited=()):
         for python in above(edited, kept) if edited else ():
             kept.pop(python, None)
-        return fingerprint._function(kernel.python).digest
+        return fingerprint._function(kernel.python, fingerprint._code).digest
 
     monkeypatch.setattr(fingerprint, "_function", remembered)
     return key

@@ -27,6 +27,7 @@ VALUE_AT, BAND_AT = range(2)  # columns of `watch_at`
 UNEQUAL = 1e5  # with all else of one size S = J M^-1 J^T loses as many digits
 SMALLEST, LARGEST = 1e-12, 1e12  # m, radii of gyration and distances of a mechanism
 ACTING = ("force", "energy")  # kernels of what acts on bodies
+STRIKE = "strike"  # kernel of impacts
 FARTHEST = 0.01  # of the mechanism with its anchors: the least that stands for the arm of a body
 
 
@@ -71,7 +72,7 @@ def judged(instances: Sequence[Instance]) -> NDArray[np.int64]:
 
 def kernels(instances: list[Instance]) -> dict[str, NDArray[np.int64]]:
     """Per kind of kernel a table of (address, first row, end row); forces that do not act are left
-    out of those in which they do."""
+    out of those in which they do, contacts whose touches take time out of impacts."""
     spans: dict[tuple[str, int], list[int]] = {}
     loaded: dict[str, Element] = {}
     part = 0
@@ -83,6 +84,8 @@ def kernels(instances: list[Instance]) -> dict[str, NDArray[np.int64]]:
     tables: dict[str, list[tuple[int, int, int]]] = {kind: [] for kind in KINDS}
     for (key, _), (a, b) in spans.items():
         for kind, kernel in loaded[key].kernels.items():
+            if kind == STRIKE and not any(map(takes_no_time, instances[a:b])):
+                continue
             if instances[a].acts or kind not in ACTING:
                 tables[kind].append((kernel.address(), a, b))
     return {kind: np.array(rows, np.int64).reshape(-1, 3) for kind, rows in tables.items()}
@@ -339,10 +342,15 @@ def contact_numbers(
     return np.array(rows, float).reshape(-1, len(ContactNumbers.columns))
 
 
+def takes_no_time(instance: Instance) -> bool:
+    """Whether touches of a contact are impacts that take no time."""
+    contact = instance.row.contact
+    return contact is not None and contact.impact is not None
+
+
 def struck(at: Addresses, contacts: list[Instance]) -> NDArray[np.int64]:
     """1 of every contact whose touches take no time.  Raises ModelError for one with a bar."""
-    found = np.array([i.row.contact is not None and i.row.contact.impact is not None
-                      for i in contacts], np.int64)  # fmt: skip
+    found = np.array([takes_no_time(i) for i in contacts], np.int64)
     for instance, strikes in zip(contacts, found, strict=True):
         if strikes and max(instance.row.con[:2]) >= at.n_rigid:
             raise ModelError(

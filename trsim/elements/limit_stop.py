@@ -214,21 +214,31 @@ def stopped(x):
 
 
 @internal
-def touch(scene, e):
-    """Penetration, its rate, and the direction of the force on body j (world, or + - axis)."""
+def depth(scene, e):
+    """Penetration and its rate."""
+    S, own = scene.S, Own(scene, e)
+    if own.kind != ON_WALL:
+        s = own.coordinate
+        low, high = own.lower - S[s, 0], S[s, 0] - own.upper
+        return (low, -S[s, 1]) if low > high else (high, S[s, 1])
+    # the wall turns: the speed of its body under the point counts
+    n = arm(scene.X, own.i, own.axis)
+    _, _, d, v = carried(scene, e)
+    return -dot(n, d), -dot(n, v)
+
+
+@internal
+def direction_on(scene, e):
+    """The direction of the force on body j (world, or + - axis)."""
     S, own = scene.S, Own(scene, e)
     n = arm(scene.X, own.i, own.axis)
     if own.kind == ON_ARC:
         n = tangent(scene, own)
     if own.kind != ON_WALL:
-        s = own.coordinate
-        low, high = own.lower - S[s, 0], S[s, 0] - own.upper
-        if low > high:
-            return low, -S[s, 1], n
-        return high, S[s, 1], (-n[0], -n[1], -n[2])
-    # the wall turns: the speed of its body under the point counts
-    _, _, d, v = carried(scene, e)
-    return -dot(n, d), -dot(n, v), n
+        x = S[own.coordinate, 0]
+        if not own.lower - x > x - own.upper:
+            return (-n[0], -n[1], -n[2])
+    return n
 
 
 @kernel
@@ -237,9 +247,10 @@ def force(t, scene, e):
     own = Own(scene, e)
     if own.phase == FLIGHT:
         return
-    d, d_dot, n = touch(scene, e)
+    d, d_dot = depth(scene, e)
     if d <= 0.0 and own.phase != CONTACT:
         return
+    n = direction_on(scene, e)
     i, j, branch = own.i, own.j, own.branch
     k, c, ramp = own.stiffness, own.damping, own.ramp
     if own.phase == CONTACT and c > 0.0 and branch != WHOLE:
@@ -259,13 +270,13 @@ def force(t, scene, e):
 
 @kernel
 def gap(t, scene, e):
-    scene.gap[e, 0], scene.gap[e, 1], _ = touch(scene, e)
+    scene.gap[e, 0], scene.gap[e, 1] = depth(scene, e)
 
 
 @kernel
 def strike(t, scene, e):
     blow, own, X = scene.blow, Own(scene, e), scene.X
-    _, _, n = touch(scene, e)
+    n = direction_on(scene, e)
     p_j = arm(X, own.j, own.p_j)
     r_i = minus(place(X, own.j, p_j), (X[own.i, 0], X[own.i, 1], X[own.i, 2]))
     impulse(blow, 0, r_i, p_j, n)
@@ -286,7 +297,7 @@ def corners(t, scene, e):
     k, c, ramp, branch = own.stiffness, own.damping, own.ramp, own.branch
     if c == 0.0 or own.phase != CONTACT:
         return
-    d, d_dot, _ = touch(scene, e)
+    d, d_dot = depth(scene, e)
     if branch == WHOLE:
         out[e, 1] = ramped_branch_of(d, d_dot, k, c, ramp)
     else:
@@ -299,7 +310,7 @@ def energy(t, scene, e):
     own = Own(scene, e)
     if own.phase == FLIGHT:
         return
-    d, _, _ = touch(scene, e)
+    d, _ = depth(scene, e)
     if d > 0.0:
         scene.E[CONTACTS] += 0.5 * own.stiffness * d * d
 
@@ -308,7 +319,7 @@ def energy(t, scene, e):
 def measure(t, scene, e, o):
     out = scene.out
     own = Own(scene, e)
-    d, d_dot, n = touch(scene, e)
+    (d, d_dot), n = depth(scene, e), direction_on(scene, e)
     f = 0.0
     if own.phase != FLIGHT and d > 0.0:
         f = ramped_damping(d, d_dot, own.stiffness, own.damping, own.ramp)

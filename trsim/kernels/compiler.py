@@ -73,14 +73,17 @@ def dispatcher(python: Any, key: str) -> Any:
     return inner(named)
 
 
-def machine_code(compiled: Any, signature: Signature) -> Code:
-    """Compile a dispatcher, and all it calls, for a signature."""
+def machine_code(compiled: Any, signature: Signature, processor: Any = None) -> Code:
+    """Compile a dispatcher, and all it calls, for a signature.
+
+    processor: LLVM's target machine, where it is not that of this process.
+    """
     wanted = numba_signature(signature)
     with way.quick():
         compiled.compile(wanted)
         result = compiled.overloads[wanted.args]
         symbol = result.fndesc.llvm_func_name
-        module, objects = way.translated(result.library, symbol)
+        module, objects = way.translated(result.library, symbol, processor)
     functions = module.functions
     needs = [f.name for f in functions if f.is_declaration and not f.name.startswith("llvm.")]
     return Code(symbol, objects, tuple(needs), way.made_of(result.library))

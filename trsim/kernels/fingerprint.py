@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from enum import Enum
 from functools import cache
 from opcode import opmap
+from operator import itemgetter
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, NamedTuple, NoReturn
@@ -27,8 +28,8 @@ from trsim.kernels.signatures import Signature
 LENGTH = 20  # hexadecimal digits
 CACHE, EXTENDED_ARG = opmap["CACHE"], opmap["EXTENDED_ARG"]
 LOAD_GLOBAL, LOAD_ATTR = opmap["LOAD_GLOBAL"], opmap["LOAD_ATTR"]
-LOAD_METHOD = opmap.get("LOAD_METHOD", LOAD_ATTR)  # until Python 3.11
-ATTRIBUTE_SHIFT = 0 if "LOAD_METHOD" in opmap else 1  # since 3.12 the last bit tells a method
+LOAD_METHOD = LOAD_ATTR if sys.version_info >= (3, 12) else opmap["LOAD_METHOD"]
+ATTRIBUTE_SHIFT = int(LOAD_METHOD == LOAD_ATTR)  # since 3.12 the last bit tells a method
 # the package's own files that decide what a function becomes
 COMPILER = (
     "kernels/columns.py", "kernels/compiler.py", "kernels/fingerprint.py", "kernels/lazy.py",
@@ -48,9 +49,23 @@ class Told(NamedTuple):
     reached: tuple[FunctionType, ...]
 
 
-def of(python: Callable, signature: Signature) -> str:
-    """The key of a function with a signature."""
-    parts = (_surroundings(), repr(signature), _function(python).digest)
+def of(python: Callable, signature: Signature, surroundings: str | None = None) -> str:
+    """The key of a function with a signature.
+
+    surroundings: in place of this compiler, its settings and this processor; whoever gives them
+    answers for these (carried.py).
+    """
+    around = _surroundings() if surroundings is None else surroundings
+    parts = (around, repr(signature), _function(python).digest)
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:LENGTH]
+
+
+def mark(python: Callable, signature: Signature) -> str:
+    """What a function is called whatever Python made its bytecode, as long as no source changes.
+
+    A key with the places of sources in place of bytecode.
+    """
+    parts = (repr(signature), _function(python, _place).digest)
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:LENGTH]
 
 
@@ -74,32 +89,62 @@ def _surroundings() -> str:
     import llvmlite.binding as llvm
     import numpy as np
 
+    versions = sys.version, np.__version__, version("numba"), llvmlite.__version__
+    processor = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+    return repr((how(), settings(), versions, llvm.llvm_version_info, processor))
+
+
+@cache
+def how() -> str:
+    """What of this package decides how code is made."""
     package = Path(__file__).parents[1]
     files = [_digest((package / name).read_bytes()) for name in COMPILER]
-    settings = sorted(
+    return _digest(repr((files, COMPILED, UNWRAPPED)).encode())
+
+
+def settings() -> list[tuple[str, str]]:
+    """Variables of the environment that numba reads."""
+    return sorted(
         (name, value) for name, value in os.environ.items()
         if name.startswith("NUMBA_") and name != "NUMBA_NUM_THREADS"  # nothing is parallel
     )  # fmt: skip
-    versions = sys.version, np.__version__, version("numba"), llvmlite.__version__
-    processor = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
-    options = COMPILED, UNWRAPPED
-    return repr((files, options, settings, versions, llvm.llvm_version_info, processor))
 
 
 _open: list[Callable] = []  # whose digests are being made
 
 
+def _code(code: CodeType) -> str:
+    """Bytecode and constants, and how arguments are taken."""
+    constants = [_constant(c) for c in code.co_consts]
+    names = code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars
+    counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags
+    return repr((code.co_code.hex(), code.co_exceptiontable.hex(), constants, names, counts))
+
+
+def _place(code: CodeType) -> str:
+    """Where a function is written."""
+    package = Path(__file__).parents[1]
+    file = Path(code.co_filename)
+    inside = file.relative_to(package).as_posix() if file.is_relative_to(package) else file.name
+    return f"{inside} {code.co_firstlineno} {code.co_qualname}"
+
+
 @cache
-def _function(python: Any) -> Told:
-    """A function with everything it reads."""
+def _function(python: Any, told_of: Callable[[CodeType], str] = _code) -> Told:
+    """A function with everything it reads; told_of: what its own code is told by."""
     if python in _open:
         _refuse(python, python.__name__, "calls itself")
     _open.append(python)
     try:
         reached: list[FunctionType] = []
-        told = [_code(python.__code__)]
+
+        def function(one: Any) -> str:
+            reached.append(one)
+            return _function(one, told_of).digest
+
+        told = [told_of(python.__code__)]
         for path, value in _read(python):
-            told.append(f"{path} {_value(value, python, path, reached)}")
+            told.append(f"{path} {_value(value, python, path, function)}")
         return Told(_digest("\n".join(told).encode()), tuple(reached))
     finally:
         _open.pop()
@@ -117,7 +162,8 @@ def _read(python: Any) -> Iterator[tuple[str, Any]]:
         if isinstance(value, ModuleType):
             _refuse(python, ".".join(path), "is a module, read for other than a name in it")
         yield ".".join(path), value
-    for name, cell in zip(python.__code__.co_freevars, python.__closure__ or (), strict=True):
+    cells = zip(python.__code__.co_freevars, python.__closure__ or (), strict=True)
+    for name, cell in sorted(cells, key=itemgetter(0)):
         yield f"cell {name}", cell.cell_contents
     for k, default in enumerate(python.__defaults__ or ()):
         yield f"default {k}", default
@@ -148,8 +194,7 @@ def _globals(code: CodeType, scope: dict[str, Any]) -> Iterator[tuple[str, ...]]
                 if operations[at] not in (LOAD_ATTR, LOAD_METHOD):
                     break
                 argument = _argument(operations, arguments, at)
-                shift = 0 if operations[at] == LOAD_METHOD != LOAD_ATTR else ATTRIBUTE_SHIFT
-                path += (code.co_names[argument >> shift],)
+                path += (code.co_names[argument >> ATTRIBUTE_SHIFT],)
                 value = getattr(value, path[-1])
             yield path
         k = operations.find(LOAD_GLOBAL, k + 1)
@@ -173,14 +218,6 @@ def _after(operations: bytes, k: int) -> int:
     return k
 
 
-def _code(code: CodeType) -> str:
-    """Bytecode and constants, and how arguments are taken."""
-    constants = [_constant(c) for c in code.co_consts]
-    names = code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars
-    counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags
-    return repr((code.co_code.hex(), code.co_exceptiontable.hex(), constants, names, counts))
-
-
 def _constant(value: Any) -> str:
     if isinstance(value, CodeType):
         return _code(value)
@@ -190,8 +227,10 @@ def _constant(value: Any) -> str:
     return repr(sorted(map(_constant, value)) if isinstance(value, frozenset) else value)
 
 
-def _value(value: Any, python: Callable, path: str, reached: list[FunctionType]) -> str:
-    """Something a function reads, by its content; functions go on the list of those reached."""
+def _value(
+    value: Any, python: Callable, path: str, told: Callable[[FunctionType], str]
+) -> str:  # fmt: skip
+    """Something a function reads, by its content; functions by what is told of them."""
     kind = type(value)
     if kind in PLAIN:
         return f"{kind.__name__} {value!r}"
@@ -199,8 +238,7 @@ def _value(value: Any, python: Callable, path: str, reached: list[FunctionType])
         return repr(value.columns)
     if isinstance(value, Lazy) or (kind is FunctionType and not _name(value)):
         function: Any = value.python if isinstance(value, Lazy) else value
-        reached.append(function)
-        return _function(function).digest
+        return told(function)
     if hasattr(kind, "tobytes") and not value.dtype.hasobject:
         order = value.flags.c_contiguous, value.flags.f_contiguous
         if not any(order) or value.nbytes > LARGEST:
@@ -210,8 +248,8 @@ def _value(value: Any, python: Callable, path: str, reached: list[FunctionType])
         return f"{value.dtype.str} {value.shape} {order} {_digest(value.tobytes())}"
     parts = _parts(value)
     if parts is not None:
-        told = [_value(part, python, path, reached) for part in parts]
-        return f"{kind.__qualname__} {getattr(kind, '_fields', '')} ({','.join(told)})"
+        each = [_value(part, python, path, told) for part in parts]
+        return f"{kind.__qualname__} {getattr(kind, '_fields', '')} ({','.join(each)})"
     signature = getattr(value, "signature", None)
     if isinstance(signature, Signature):  # a machine.Caller: its code is made of this alone
         return repr(signature)

@@ -4,7 +4,8 @@ A function is compiled when it is first needed and never again: its machine code
 user's cache folder (kept.py) under a key made of its bytecode, of that of everything it reaches, of
 the types it works on, of the compiler and of the processor (fingerprint.py).  Loading it takes
 LLVM's loader and half a millisecond; numba, with half a second of imports, is not touched.
-Whatever is edited gets another key, so nothing old is ever run.
+Whatever is edited gets another key, so nothing old is ever run.  What the cache does not have may
+have come with the package (carried.py).
 
 Every call, from Python or from other machine code, is numba's own calling convention,
 
@@ -14,7 +15,6 @@ with an array as (0, 0, size, bytes of an entry, data, shape, strides).
 """
 
 import ctypes
-import hashlib
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, cached_property
@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from trsim.errors import FileError
-from trsim.kernels import fingerprint, kept
+from trsim.kernels import carried, fingerprint, kept
 from trsim.kernels.kept import folder
 from trsim.kernels.lazy import PYTHON, Lazy
 from trsim.kernels.lock import turn
@@ -36,6 +36,7 @@ LIBRARY = frozenset(
 )
 LETTERS = {"float64": "d", "int64": "lq", "complex128": "D"}  # numpy's
 ERRORS = (-1,)  # of a status; above 0: an exception of the function's own
+made: list["Compiled"] = []  # all functions of modules that were imported
 
 
 def lock() -> Path:
@@ -49,6 +50,7 @@ class Compiled(Lazy):
     def __init__(self, python: Callable, signature: Signature) -> None:
         super().__init__(python)
         self.signature = signature
+        made.append(self)
 
     @cached_property
     def key(self) -> str:
@@ -65,18 +67,22 @@ class Compiled(Lazy):
     @cached_property
     def file(self) -> Path:
         """Where its machine code is kept."""
-        name = f"{self.python.__module__.removeprefix('trsim.')}.{self.python.__name__}"
-        return folder() / f"{name}-{self.key}.code"
+        return folder() / f"{carried.name(self.python)}-{self.key}.code"
 
     @property
     def known(self) -> bool:
-        """Whether its machine code is kept, and whole, or none is needed."""
-        return PYTHON or _read(self.file) is not None
+        """Whether its machine code is kept or carried, and whole, or none is needed."""
+        return PYTHON or self._found() is not None
+
+    def _found(self) -> tuple[str, bytes] | None:
+        """Symbol and object file: from the cache, or as they came with the package."""
+        kept_one = _read(self.file)
+        return carried.code(self.python, self.signature) if kept_one is None else kept_one
 
     @cached_property
     def entry(self) -> int:
         """Where the machine code starts."""
-        code = _read(self.file)
+        code = self._found()
         if code is None:
             with turn(lock(), self.key):  # another process may be compiling it
                 code = _read(self.file) or self._compiled()
@@ -85,14 +91,22 @@ class Compiled(Lazy):
     def keep(self) -> None:
         """Have the machine code in the cache, unless another process is at it."""
         with turn(lock(), self.key, wait=False) as ours:
-            if ours and _read(self.file) is None:
+            if ours and self._found() is None:
                 self._compiled()
 
     def _compiled(self) -> tuple[str, bytes]:
         """Symbol and object file, just compiled; they are kept where that is possible."""
+        carried.tell()
+        code = self.translated()
+        with suppress(OSError):  # a folder that cannot be written to: compiled again next time
+            kept.store(self.file, [carried.sealed(*code)])
+        return code
+
+    def translated(self, processor: Any = None) -> tuple[str, bytes]:
+        """Symbol and object file for a processor, LLVM's target machine; None: the one it is."""
         from trsim.kernels.compiler import machine_code
 
-        code = machine_code(self.inner, self.signature)
+        code = machine_code(self.inner, self.signature, processor)
         foreign = set(code.needs) - LIBRARY
         if foreign:
             raise RuntimeError(f"{self.file.stem} needs {sorted(foreign)} of others")
@@ -100,9 +114,6 @@ class Compiled(Lazy):
         if unseen:  # an edit to one of them would not be noticed
             names = sorted(one.co_qualname for one in unseen)
             raise RuntimeError(f"the key of {self.file.stem} does not cover {names}")
-        with suppress(OSError):  # a folder that cannot be written to: compiled again next time
-            name = code.symbol.encode()
-            kept.store(self.file, [_digest(name, code.objects), b"\n", name, b"\n", code.objects])
         return code.symbol, code.objects
 
     def address(self) -> int:
@@ -190,16 +201,9 @@ def _array(value: Any, kind: Kind) -> tuple[int, ...]:
 def _read(path: Path) -> tuple[str, bytes] | None:
     """Symbol and object file; None where there is none, a damaged one or not one of the user's."""
     try:
-        digest, symbol, objects = kept.content(path).split(b"\n", 2)
-    except (OSError, ValueError):
+        return carried.opened(kept.content(path))
+    except OSError:
         return None
-    if _digest(symbol, objects) != digest:
-        return None
-    return symbol.decode(), objects
-
-
-def _digest(symbol: bytes, objects: bytes) -> bytes:
-    return hashlib.sha256(symbol + b"\n" + objects).hexdigest().encode()
 
 
 # --- LLVM's loader ---------------------------------------------------------------------------

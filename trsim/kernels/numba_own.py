@@ -28,8 +28,10 @@ def made_of(_: Any) -> frozenset[CodeType]:
     return frozenset()
 
 
-def translated(library: Any, symbol: str) -> tuple[Any, bytes]:
+def translated(library: Any, symbol: str, processor: Any = None) -> tuple[Any, bytes]:
     """One function with all it calls: LLVM's module, and its machine code."""
+    if processor is not None:
+        raise NotImplementedError("numba has optimised it for this processor")
     module = llvm.parse_assembly(library.get_llvm_str())
     for function in module.functions:
         if not function.is_declaration:

@@ -49,7 +49,8 @@ from numba.core.untyped_passes import (
 )
 from numba.np import arrayobj
 
-KNOWN = range(62, 69)  # versions 0.62 to 0.68
+from trsim.kernels.signatures import KNOWN
+
 if numba.version_info[:2] not in {(0, minor) for minor in KNOWN}:
     raise ImportError(f"numba {numba.__version__} is not among the versions known here")
 
@@ -153,15 +154,23 @@ def made_of(library: Library) -> frozenset[CodeType]:
     return frozenset(python.__code__ for python in ours if python is not None)
 
 
-def translated(library: Library, symbol: str) -> tuple[Any, bytes]:
-    """One function with all it calls, optimised: LLVM's module, and its machine code."""
+def translated(library: Library, symbol: str, processor: Any = None) -> tuple[Any, bytes]:
+    """One function with all it calls, optimised: LLVM's module, and its machine code.
+
+    processor: the target machine, where it is not numba's.
+    """
     module, codegen = library._get_module_for_linking(), library._codegen
     for function in _written(module):
         function.linkage = "external" if function.name == symbol else "internal"
     module.verify()
-    passes, builder = codegen._module_pass_manager()
+    theirs = codegen._tm
+    codegen._tm = machine = processor or theirs
+    try:
+        passes, builder = codegen._module_pass_manager()
+    finally:
+        codegen._tm = theirs
     passes.run(module, builder)
-    return module, codegen._tm.emit_object(module)
+    return module, machine.emit_object(module)
 
 
 _THEIR_CALL_TYPE = BaseFunction.get_call_type

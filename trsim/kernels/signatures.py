@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+KNOWN = range(62, 69)  # numba 0.62 to 0.68: what pipeline.py takes of its inside, how it calls
+
 
 class Kind(NamedTuple):
     """The type of an argument, or of a field of a record."""
