@@ -165,6 +165,8 @@ def test_half_a_turn_is_told():
         ("elastic: '1 + angle'", "a moment of 1 at an angle of 0"),
         ("elastic: {table: [[0.1, 1], [1, 2]]}", "without a row at an angle of 0"),
         ("elastic: {table: [[0, 1], [1, 2]]}", "a moment of 1 at an angle of 0"),
+        ("elastic: '2*(angle > 0)'", "a moment of 2 at once, where `angle`"),
+        ("damper: '2*sign(rate)'", "a moment of 2 at once, where `rate`"),
         ("elastic: 'stretch'", "'stretch' cannot stand here"),
         ("elastic: {table: [[0 m, 0], [1 m, 2]]}", "wrong unit: 'm'; 'angle' is in rad"),
         ("elastic: {table: [[0, 0 N], [1, 2 N]]}", "unit"),

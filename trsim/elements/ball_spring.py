@@ -51,6 +51,7 @@ from trsim.laws.quadrature import integral
 from trsim.varying import Function
 
 TURN, ANGLE = "rotation_vector", "angle"
+BEGUN = (1e-12, 1e-6)  # rad, rad/s: what is half as large at the first as at the second jumps at 0
 NEXT_TO_HALF = 0.1  # rad: so near to half a turn it is told
 
 
@@ -80,6 +81,7 @@ class BallSpring(Spec):
             check_elastic(self.elastic)
         if self.damper is not None:
             check_damper(self.damper, backward=False)
+            check_begins(self.damper, "damper", RATE, "what resists at once is `joint_friction`")
         if self.springs or self.damping > 0.0 or self.damper is not None:
             return self
         what = "give `stiffness`, `damping`, `elastic` or `damper`"
@@ -100,10 +102,21 @@ def check_elastic(f):
         at_rest = f.y[f.x.index(0.0)]
     else:
         at_rest = of_number(f, ANGLE, 0.0)
+    hint = "it is 0 where nothing is turned; of a preload about one axis take `applied_load`"
     if at_rest != 0.0:
         what = f"a moment of {at_rest:g} at an angle of 0, about no axis"
-        hint = "it is 0 where nothing is turned; of a preload about one axis take `applied_load`"
         raise ScenarioError(what, hint, ("elastic",))
+    check_begins(f, "elastic", ANGLE, hint)
+
+
+def check_begins(f, key, name, hint):
+    """Refuse a moment that does not begin at 0: its axis is any that rounding makes."""
+    if f.kind == "table":
+        return
+    at_once, soon = (abs(of_number(f, name, x)) for x in BEGUN)
+    if at_once > 0.5 * soon:
+        what = f"a moment of {at_once:g} at once, where `{name}` is hardly above 0"
+        raise ScenarioError(what, hint, (key,))
 
 
 class Own(TwoPoints):
