@@ -10,6 +10,7 @@ there, and its rate and acceleration are those just after.
 
 from math import atan2, copysign, sqrt
 
+from trsim.elements.contract import Turning
 from trsim.elements.frames import (
     Along,
     arm,
@@ -29,6 +30,12 @@ class Bent(Along):
     """Of an element on the bend of a joint: `axis` is that of body i."""
 
     other: V3  # and this that of body j, in its axes
+
+
+def turning(row):
+    """It feels where both axes point, and turns them."""
+    own = Bent.of(row)
+    return Turning(frames=(own.i, own.j), axes=((own.i, own.axis), (own.j, own.other)))
 
 
 STRAIGHT = 1e-10  # sine of a bend below which rounding alone says about which axis it bends

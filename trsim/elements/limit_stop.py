@@ -20,6 +20,7 @@ from annotated_types import Ge, Gt, Interval
 from pydantic import model_validator
 
 from trsim.elements.bend import Bent, bend
+from trsim.elements.bend import turning as turning_bend
 from trsim.elements.contract import (
     CONTACT,
     CONTACTS,
@@ -355,6 +356,8 @@ def reach(row):
 def turning(row):
     """The wall is carried along by its body."""
     own = Own.of(row)
+    if own.kind == ON_BEND:
+        return turning_bend(row)
     if own.kind != ON_WALL:
         return Turning(frames=(own.i, own.j))
     return Turning(points=((own.j, own.p_j),), axes=((own.i, own.axis),))

@@ -9,7 +9,8 @@ curve; or its bend (bend.py), which is counted from straight unless `at_start` s
 from typing import Annotated, ClassVar, Literal
 
 from trsim.elements.bend import Bent, bend, bend_acceleration
-from trsim.elements.contract import Channel, Element, Row, kernel, measured
+from trsim.elements.bend import turning as turning_bend
+from trsim.elements.contract import Channel, Element, Row, Turning, ends, kernel, measured
 from trsim.elements.coordinates import ANY
 from trsim.elements.frames import (
     arm,
@@ -119,12 +120,19 @@ def measure(t, scene, e, o):
         out[o + 2] = own.sign * stroke_acceleration(scene, e, axis)
 
 
+def turning(row):
+    if Own.of(row).turns == ON_BEND:
+        return turning_bend(row)
+    return Turning(tuple(ends(row)))
+
+
 ELEMENT = Element(
     key="sensor",
     section="sensors",
     spec=Sensor,
     pack=pack,
     channels=CHANNELS,
+    turning=turning,
     kernels={"coordinate": coordinate, "measure": measure},
     example=on_pendulum("elevation: {joint: hinge, at_start: 90 deg}"),
 )
