@@ -110,3 +110,25 @@ def test_refused():
     text = PASSING.replace("PLANAR", "false").replace("METHOD", "auto")
     with pytest.raises(TrsimError, match="itself"):
         built(text.replace("BODIES", "[block, block]").replace("POINTS", "[[0, 0], [1, 0]]"))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_points_drawn_at_one_place_meet(seed):
+    """However the body is turned, and far from the origin, where rounding keeps them apart."""
+    rng = np.random.default_rng(seed)
+    p = rng.normal(size=3) * rng.choice([1, 30, 1000])
+    c, v, w = p + rng.normal(size=3), rng.normal(size=3), 3 * rng.normal(size=3)
+    r = run(f"""
+planar: false
+bodies: {{top: {{mass: 3, inertia: [0.05, 0.05, 0.05], at: {c.tolist()},
+               angle: {rng.uniform(-3, 3)}, velocity: {v.tolist()},
+               angular_velocity: {w.tolist()}}}}}
+sensors: {{d: {{type: distance, bodies: [ground, top], points: [{p.tolist()}, {p.tolist()}]}}}}
+solver: {{end: 0.02}}
+output: {{every: 0.01, channels: ["*"]}}
+""")
+    of_point, again = v + np.cross(w, p - c), np.cross(w, np.cross(w, p - c))
+    speed = np.linalg.norm(of_point)
+    assert r["d.rate"][0] == pytest.approx(speed, rel=1e-9)
+    assert r["d.acceleration"][0] == pytest.approx(of_point @ again / speed, rel=1e-9)
+    assert np.abs(r["d.acceleration"]).max() < 1e3

@@ -57,3 +57,19 @@ def test_energy_of_flexible_bars():
     assert r["k"] == pytest.approx(total, abs=1e-12)
     with pytest.raises(TrsimError, match="energy book alone"):
         built(BAR.replace("KIND", "total"))
+
+
+def test_what_a_stop_stores_counts():
+    """A block runs into a spring of a stop: m v^2 / 2 = k d^2 / 2 where it turns round."""
+    r = run("""
+bodies: {block: {mass: 2 kg, inertia: 0.01, velocity: [0.5, 0]}}
+joints: {slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}
+forces: {bumper: {type: limit_stop, joint: slide, upper: 20 mm, stiffness: 1e4 N/m}}
+sensors: {stored: {type: energy, of: stored}, all: {type: energy}}
+solver: {end: 0.1}
+output: {every: 1 ms}
+""")
+    depth = np.maximum(r["bumper.penetration"], 0.0)
+    assert r["stored"] == pytest.approx(0.5e4 * depth**2, abs=1e-12)
+    assert r.largest("stored")[0] == pytest.approx(0.25, rel=1e-8)
+    assert r["all"] == pytest.approx(np.full(len(r.t), 0.25), rel=1e-7)

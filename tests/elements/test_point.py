@@ -83,3 +83,27 @@ def test_refused():
         built(text + "axis: [0, 0]}}")
     with pytest.raises(TrsimError, match="no body or point named 'c'"):
         built(text + "axis: [1, 0], frame: c}}")
+
+
+BAR = """
+planar: false
+bodies:
+  bar: {mass: 2, inertia: [1e-4, 0.17, 0.17], at: [0.5, 0, 0],
+        flexible: {youngs_modulus: 70 GPa, area: 1e-4, second_moment: 1e-9, elements: 2}}
+joints: {clamp: {type: spherical, bodies: [ground, bar], at: [0, 0, 0]},
+         far: {type: inline, bodies: [ground, bar], at: [1, 0, 0], axis: [1, 0, 0]}}
+sensors: {tip: {type: point, body: bar, axis: [0, 1, 0], WHERE}}
+"""
+
+
+def test_of_a_flexible_bar_in_space():
+    """Nobody knows how it turns about itself, so what lies on its line alone can be told."""
+    on_line = "at: [1, 0, 0], origin: [0, 0.3, 0.2]"
+    assert built(BAR.replace("WHERE", on_line)).model.n > 2
+    refused = {
+        "at: [1, 0.1, 0]": "is not on the line of 'bar'",
+        "at: [1, 0, 0], frame: bar, origin: [0.5, 0, 0]": "about itself",
+    }
+    for where, words in refused.items():
+        with pytest.raises(TrsimError, match=words):
+            built(BAR.replace("WHERE", where))

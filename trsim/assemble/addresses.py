@@ -11,7 +11,7 @@ from trsim.assemble.overshoot import overshoot
 from trsim.assemble.places import Places
 from trsim.assemble.poles import Guard, guards
 from trsim.assemble.waves import Swinging
-from trsim.elements.coordinates import ANY, split
+from trsim.elements.coordinates import ANY, bend_of, split
 from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names, rebuilt
 from trsim.laws import functions
@@ -89,7 +89,10 @@ class Addresses(Places):
     def sensor_kind(self, name: str) -> str:
         """What a sensor shows: an angle or a stroke, its own or that of its joint."""
         own = self.elements["sensors", name].coordinates
-        return own[0] if own else self.coordinate(self.scenario.sensors[name].joint, ANY).kind
+        joint = "" if own else self.scenario.sensors[name].joint
+        if joint and bend_of(joint, self.scenario.joints)[0]:
+            return "angle"
+        return own[0] if own else self.coordinate(joint, ANY).kind
 
     def contact_law(self, name: str | None) -> Any:
         laws = self.scenario.contact_laws

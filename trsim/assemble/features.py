@@ -60,6 +60,7 @@ def features(at: Any, instances: list[Any]) -> dict[str, Any]:
         if i.section in ("sensors", "forces") and "coordinate" in i.element.kernels
     ]
     owner = {Pair.of(row).coordinate: e for row, e in own_entries}
+    owner |= {row.speed: e for row, e in own_entries if row.speed >= 0}
     rates = {k: owner[source] for source, k in at.rates.items()}
     sensed = [
         (k, *(of_rate(instances, rates[k]) if k in rates else of_instance(instances, owner[k])[:2]))

@@ -11,7 +11,7 @@ from trsim.assemble.dense import product
 from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.elements.contract import N_BOOK
-from trsim.elements.coordinates import named
+from trsim.elements.coordinates import BEND, bend_of, named
 from trsim.elements.joint import triad
 from trsim.elements.rows import ARC, COORDINATES
 from trsim.errors import ScenarioError, known
@@ -25,7 +25,7 @@ class JointCoordinate(NamedTuple):
     name: str  # what it is called
     joint: str
     entry: int  # in S
-    kind: str  # angle, stroke, ARC, or WOUND: what else is known up to full turns
+    kind: str  # angle, stroke, ARC, BEND, or WOUND: what else is known up to full turns
     i: int
     j: int
     s_i: tuple[float, ...]  # the joint's point in both bodies
@@ -35,7 +35,8 @@ class JointCoordinate(NamedTuple):
     drawn: float  # value as drawn
     place: tuple[float, ...]  # the joint's point in world axes as drawn
     curve: tuple[int, ...] = ()  # of an arc: offset in tab, entry of u, 1: of a point on it
-    other_i: tuple[float, ...] = ()  # and the y axis of its plane, where axis_i is the x axis
+    # and the y axis of its plane, where axis_i is the x axis; of a bend the axis of body j, in it
+    other_i: tuple[float, ...] = ()
     # the axis is one of the joint's second body: that is i, and j the first one
     turned: bool = False
     from_drawing: bool = False  # an angle that is 0 as drawn
@@ -217,6 +218,20 @@ class Places:
                 turned=turned, from_drawing=zero,
             )  # fmt: skip
         return self.coordinates[name]
+
+    def bend(self, reference: str) -> JointCoordinate | None:
+        """The bend of a joint, where that is what a reference names: no entry of S."""
+        joint, axes = bend_of(reference, self.scenario.joints)
+        if axes is None:
+            return None
+        spec, (a, b) = self.scenario.joints[joint], axes
+        i, j = self.bodies(spec.bodies, spec.at)
+        s_i, s_j = self.local(i, spec.at), self.local(j, spec.at)
+        drawn = atan2(float(np.linalg.norm(np.cross(a, b))), float(np.dot(a, b)))
+        return JointCoordinate(
+            f"{joint}.{BEND}", joint, -1, BEND, i, j, s_i, s_j, self.axes(i, a), a, drawn,
+            tuple(spec.at), other_i=self.axes(j, b),
+        )  # fmt: skip
 
     def turn(
         self, name: str, i: int, j: int, axis: tuple[float, ...], frame: Frame | None

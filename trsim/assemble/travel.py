@@ -14,9 +14,12 @@ from trsim.assemble.switches import CHANNEL, LIMITS, TIME, Switches
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
 # TWIST: an angle about axes that may lean apart; TRAIN: two angles, each times a radius; SURFACE:
 # the distance from a surface; EDGE: the larger of the strokes of both ends of a line; OUTLINE: that
-# of an outline from a surface
-UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST, TRAIN, SURFACE, EDGE, OUTLINE = range(10)
-RATE_OF = 10  # added to a kind: the rate of such a quantity
+# of an outline from a surface; BEND: the angle between an axis of either frame; SWING: that of the
+# whole turn of one against the other, whose rate is the size of the angular velocity
+UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST, TRAIN, SURFACE, EDGE, OUTLINE, BEND, SWING = range(
+    12
+)
+RATE_OF = 12  # added to a kind: the rate of such a quantity
 KINDS = {
     "": UNKNOWN,
     "arc": UNKNOWN,
@@ -28,8 +31,11 @@ KINDS = {
     "surface": SURFACE,
     "edge": EDGE,
     "outline": OUTLINE,
+    "bend": BEND,
+    "swing": SWING,
 }
-UNBOUNDED = (UNKNOWN, TWIST, TRAIN, SURFACE, EDGE, OUTLINE)  # kinds whose rates have no bound
+ANGLES = (ANGLE, TWIST, BEND, SWING)  # in rad
+UNBOUNDED = (UNKNOWN, TWIST, TRAIN, SURFACE, EDGE, OUTLINE, BEND)  # kinds whose rates have no bound
 
 
 def travels(instances: list[Instance], contacts: list[int], switches: Switches) -> dict[str, Any]:

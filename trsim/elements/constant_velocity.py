@@ -63,6 +63,12 @@ class Own(Axes):
     w_j: V3  # w in the axes of body j
 
 
+def shafts(spec):
+    """Unit vectors along both shafts, world axes as drawn."""
+    a = of_key(spec, "axis")
+    return a, a if spec.second_axis is None else of_key(spec, "second_axis")
+
+
 def bent(v, a, b):
     """A vector turned by the shortest turn from a to b, unit vectors not opposite to each other."""
     n = across(a, b)
@@ -74,9 +80,8 @@ def bent(v, a, b):
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    of_key(spec, "axis")
+    _, b = shafts(spec)
     u, w, a = perpendicular(spec.axis)
-    b = a if spec.second_axis is None else of_key(spec, "second_axis")
     cosine = sum(p * q for p, q in zip(a, b, strict=True))
     if cosine <= 0.0:
         raise ScenarioError(
@@ -150,6 +155,7 @@ ELEMENT = joint(
     rows=(*POINT, JointRow("turn", "c", fill=twist)),
     pack=pack,
     sways=True,
+    bends=shafts,
     channels=(Channel("bend", "rad", "angle between the shafts", least=0.0),),
     kernels={"gaps": gap, "measure": measure},
     doubts=doubts,

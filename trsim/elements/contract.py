@@ -238,6 +238,7 @@ class Row:
     # what its gap or its coordinate is: angle, stroke, distance; solve/march/spread.py
     travel: str = ""
     kink: float = float("inf")  # |gap| at which it passes from one of two branches to the other
+    speed: int = -1  # entry of S of which only the rate is there, that of what it travels
     unheld: str = ""  # the row of its element that holds nothing here
     reads: frozenset[str] = frozenset()  # sensors its functions depend on
     piston: int = -1  # entry of z with the stroke of a piston that a supply moves
@@ -345,6 +346,9 @@ class Element:
     slides: tuple[int, int] | None = None
     dear: bool = False  # no joint is released to it where another choice does as well
     sways: bool = False  # of a joint about a point: which turns it leaves is a rotation vector
+    # (spec) -> axes of its bodies, as drawn, whose angle is the bend of a joint, or None; None: no
+    # joint of this kind has one
+    bends: Callable[[Any], tuple | None] | None = None
     meets: bool = False  # its bodies meet at the point `at`
     welds: bool = False  # its two bodies move as one
     pin: tuple[int, ...] = ()  # dimensions, 2 or 3, in which its rows hold a point and nothing else

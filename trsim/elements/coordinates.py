@@ -8,6 +8,7 @@ from trsim.elements.rows import ARC, COORDINATES
 from trsim.errors import ScenarioError, known
 
 ANY = "any"  # kind of coordinate: also a length along a curve
+BEND = "bend"  # of a joint; it is watched and stopped, and nothing drives or relates it
 
 
 def split(reference: str, joints: Any) -> tuple[str, str]:
@@ -20,6 +21,22 @@ def of_joint(joint: str, joints: Mapping[str, Any]) -> dict[str, str]:
     """The coordinates of a joint, by what they are called; of others none."""
     there = elements.load(joints[joint].type).coordinates if joint in joints else ()
     return {joint if len(there) == 1 else f"{joint}.{one}": one for one in there}
+
+
+def bend_of(reference: str, joints: Mapping[str, Any]) -> tuple[str, Any]:
+    """The joint whose bend is meant and the axes between which it is; ("", None) where none is.
+
+    Raises ScenarioError of a joint that has no axes to count it from.
+    """
+    joint, which = split(reference, joints)
+    if which != BEND or elements.load(joints[joint].type).bends is None:
+        return "", None
+    axes = elements.load(joints[joint].type).bends(joints[joint])
+    if axes is None:
+        what = f"'{joint}' has no axes between which it could bend"
+        hint = f"give joints.{joint} an `axis`, and a `second_axis` where it is drawn bent"
+        raise ScenarioError(what, hint, ("joint",))
+    return joint, axes
 
 
 def named(
@@ -37,8 +54,17 @@ def named(
     if not there:
         hint = "name a revolute or a prismatic joint"
         if elements.load(word).sways:
-            hint += "; a `ball_spring` holds and damps this one"
+            hint += (
+                f"; a `ball_spring` holds and damps this one, sensors and a `limit_stop` know its "
+                f"bend, `{joint}.{BEND}`"
+            )
         raise ScenarioError(f"joint '{joint}' ({word}) has no coordinate", hint, path)
+    if which == BEND and elements.load(word).bends is not None:
+        raise ScenarioError(
+            f"the bend of '{joint}' is none of its coordinates",
+            f"sensors and a `limit_stop` know it; here name {' or '.join(there)}",
+            path,
+        )
     if which and which not in there.values():
         raise ScenarioError(f"joint '{joint}' has no {which}", known(reference, there), path)
     if kind != ANY and any(COORDINATES[own].kind == ARC for own in there.values()):

@@ -3,7 +3,8 @@
     s = |d|,    s' = n . d',    s'' = n . d'' + (|d'|^2 - s'^2) / s        n = d / |d|
 
 d goes from the point on the first body to the point on the second.  Where the points meet d has no
-direction, and the sensor turns back: its rate and its acceleration are then those just after.
+direction, and the sensor turns back: its rate and its acceleration are then those just after.  So
+they are where rounding alone keeps the points apart.
 """
 
 from math import sqrt
@@ -23,6 +24,8 @@ from trsim.elements.frames import (
 )
 from trsim.fields import Spec, point
 from trsim.kernels.lazy import internal
+
+ROUNDING = 1e-15  # of places: points that are nearer to each other meet
 
 
 class Distance(Spec):
@@ -47,18 +50,26 @@ def pack(name, spec, at):
 
 @internal
 def length_and_rate(scene, e):
-    """The distance and its rate."""
+    """The distance and its rate, and whether the points meet."""
     _, _, d, d_dot = apart(scene, e)
     length = sqrt(dot(d, d))
-    if length == 0.0:
-        return length, sqrt(dot(d_dot, d_dot))
-    return length, dot(d, d_dot) / length
+    i, p_i, j, p_j = two_points(scene, e)
+    if length <= ROUNDING * (far(scene.X, i, p_i) + far(scene.X, j, p_j)):
+        return length, sqrt(dot(d_dot, d_dot)), True
+    return length, dot(d, d_dot) / length, False
+
+
+@internal
+def far(X, f, p):
+    """The size of the numbers that a place is the sum of."""
+    place = abs(X[f, 0]) + abs(X[f, 1]) + abs(X[f, 2])
+    return place + abs(p[0]) + abs(p[1]) + abs(p[2])
 
 
 @kernel
 def coordinate(t, scene, e):
     s = TwoPoints(scene, e).coordinate
-    scene.S[s, 0], scene.S[s, 1] = length_and_rate(scene, e)
+    scene.S[s, 0], scene.S[s, 1], _ = length_and_rate(scene, e)
 
 
 @measured
@@ -66,10 +77,10 @@ def measure(t, scene, e, o):
     V, A, out = scene.V, scene.A, scene.out
     i, p_i, j, p_j = two_points(scene, e)
     _, _, d, d_dot = apart(scene, e)
-    length, rate = length_and_rate(scene, e)
+    length, rate, meet = length_and_rate(scene, e)
     a_i = plus(velocity(A, i, p_i), centripetal(V, i, p_i))
     d_ddot = minus(plus(velocity(A, j, p_j), centripetal(V, j, p_j)), a_i)
-    if length > 0.0:
+    if not meet:
         bend = (dot(d, d_ddot) + dot(d_dot, d_dot) - rate * rate) / length
     elif rate > 0.0:
         bend = dot(d_dot, d_ddot) / rate

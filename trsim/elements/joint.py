@@ -38,7 +38,7 @@ def place_on(spec, body):
 
 def triad(spec):
     """Unit vectors u, w, a of a joint, world axes as drawn: a its axis, u its x axis if given."""
-    u, w, a = perpendicular(getattr(spec, "axis", Z), spec.drawn_in)
+    u, w, a = perpendicular(getattr(spec, "axis", None) or Z, spec.drawn_in)
     if getattr(spec, "x_axis", None) is None:
         return u, w, a
     x = of_key(spec, "x_axis")

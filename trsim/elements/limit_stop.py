@@ -4,7 +4,8 @@
 
 Point on wall: d = -(p - w) . n with n the allowed side, fixed in the wall's body; F n acts at the
 point, -F n on the wall's body at the same place.  Joint: d = max(lower - x, x - upper), F acts
-along the axis of the joint; of a place on a curve along its tangent, on the point.  The damping
+along the axis of the joint; of a place on a curve along its tangent, on the point; of the bend of a
+joint about the axis it bends about (bend.py).  The damping
 fades in over the ramp, so there is no jump at the touch and no memory of the impact speed; soft
 impacts are right, where Lankarani-Nikravesh is not.  In the phase of contact the spring is drawn on
 to d < 0, where no accepted step ever is.  The end of the ramp and the place from which the force
@@ -12,11 +13,14 @@ would pull are corners, located like a touch.  With a restitution a touch faster
 impact takes no time (solve/march/impacts.py), and this force is that of what no longer bounces.
 """
 
+from math import pi
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge, Gt, Interval
 from pydantic import model_validator
 
+from trsim.elements.bend import Bent, bend
+from trsim.elements.bend import turning as turning_bend
 from trsim.elements.contract import (
     CONTACT,
     CONTACTS,
@@ -33,7 +37,7 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.coordinates import ANY, called, of_joint, split
+from trsim.elements.coordinates import ANY, BEND, called, of_joint, split
 from trsim.elements.frames import (
     arm,
     at_both,
@@ -92,7 +96,8 @@ class LimitStop(Spec):
 
     point           what touches the wall
     wall            what it touches
-    joint           joint whose coordinate is limited; the place of a point on a curve is one
+    joint           joint whose coordinate is limited; the place of a point on a curve is one, and
+                    NAME.bend the angle between shafts or the axes of a ball, counted from straight
     lower           least coordinate
     upper           largest coordinate
     stiffness       of the contact
@@ -139,8 +144,8 @@ class LimitStop(Spec):
         """The two bodies it pushes apart, and the hinge about whose axis it does."""
         if self.joint is None:
             return (self.point.body, self.wall.body), None
-        name, _ = split(self.joint, joints)
-        if name not in joints:
+        name, which = split(self.joint, joints)
+        if name not in joints or which == BEND:  # nobody knows about which axis it bends
             return (), None
         own, hinge = of_joint(name, joints).get(called(self.joint, joints), ""), joints[name]
         if own and COORDINATES[own].of == "j":
@@ -149,15 +154,16 @@ class LimitStop(Spec):
 
 
 WITH_UNITS = ("lower", "upper", "ramp", "stiffness", "damping", "slowest_impact")
-ON_WALL, ON_ANGLE, ON_STROKE, ON_ARC = 0, 1, 2, 3
-KINDS = {"angle": ON_ANGLE, "stroke": ON_STROKE, ARC: ON_ARC}
+ON_WALL, ON_ANGLE, ON_STROKE, ON_ARC, ON_BEND = range(5)
+KINDS = {"angle": ON_ANGLE, "stroke": ON_STROKE, ARC: ON_ARC, BEND: ON_BEND}
 UNBOUNDED = 1e300
+ACROSS = 1e-9  # of an axis: in a plane one across it bends nowhere
 
 
 class Own(AlongCurve):
     """Of one instance; its axis is the normal of the wall, or that of the joint."""
 
-    kind: i8  # ON_WALL, ON_ANGLE, ON_STROKE or ON_ARC
+    kind: i8  # ON_WALL, ON_ANGLE, ON_STROKE, ON_ARC or ON_BEND
     stiffness: f8
     damping: f8
     ramp: f8
@@ -188,18 +194,31 @@ def pack(name, spec, at):
         own = Own.packed(spec, **places, kind=ON_WALL, axis=n, lower=0.0, upper=0.0,
                          on_second=1.0, **NO_CURVE)  # fmt: skip
         return Row(*own, contact, travel="stroke")
-    x = at.coordinate(spec.joint, ANY)
-    at.check_units(x.kind, LimitStop, WITH_UNITS, "forces", name)
+    x = bent(spec, at) or at.coordinate(spec.joint, ANY)
     kind = KINDS[x.kind]
+    turns = kind in (ON_ANGLE, ON_BEND)
+    at.check_units("angle" if turns else x.kind, LimitStop, WITH_UNITS, "forces", name)
     curve = NO_CURVE if kind != ON_ARC else stopped(x)
+    if kind == ON_BEND:
+        curve = NO_CURVE | {"other": x.other_i}
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
     on_second = -1.0 if x.turned else 1.0
     own = Own.packed(
         spec, **on_joint(x), kind=kind, lower=low, upper=high, on_second=on_second, **curve
     )
-    turns = kind == ON_ANGLE
     return Row(*own, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
+
+
+def bent(spec, at):
+    """The bend that it stops, if it is one.  Refuses limits that none ever comes to."""
+    x = at.bend(spec.joint)
+    for key, beyond in (("upper", 0.0), ("lower", pi)) if x else ():
+        limit = getattr(spec, key)
+        if limit is not None and (limit <= beyond if key == "upper" else limit >= beyond):
+            what = f"a bend is between 0 and half a turn, and `{key}` is {limit:g} rad"
+            raise ScenarioError(what, "it is counted from where the axes are straight", (key,))
+    return x
 
 
 def stopped(x):
@@ -214,13 +233,21 @@ def stopped(x):
 
 
 @internal
+def nearer(own, x, rate):
+    """The penetration of the nearer limit, and its rate."""
+    low, high = own.lower - x, x - own.upper
+    return (low, -rate) if low > high else (high, rate)
+
+
+@internal
 def depth(scene, e):
     """Penetration and its rate."""
     S, own = scene.S, Own(scene, e)
+    if own.kind == ON_BEND:
+        x, rate, _ = bend(scene, Bent(scene, e))
+        return nearer(own, x, rate)
     if own.kind != ON_WALL:
-        s = own.coordinate
-        low, high = own.lower - S[s, 0], S[s, 0] - own.upper
-        return (low, -S[s, 1]) if low > high else (high, S[s, 1])
+        return nearer(own, S[own.coordinate, 0], S[own.coordinate, 1])
     # the wall turns: the speed of its body under the point counts
     n = arm(scene.X, own.i, own.axis)
     _, _, d, v = carried(scene, e)
@@ -232,13 +259,17 @@ def direction_on(scene, e):
     """The direction of the force on body j (world, or + - axis)."""
     S, own = scene.S, Own(scene, e)
     n = arm(scene.X, own.i, own.axis)
+    if own.kind == ON_WALL:
+        return n
     if own.kind == ON_ARC:
         n = tangent(scene, own)
-    if own.kind != ON_WALL:
+    if own.kind == ON_BEND:
+        x, _, n = bend(scene, Bent(scene, e))
+    else:
         x = S[own.coordinate, 0]
-        if not own.lower - x > x - own.upper:
-            return (-n[0], -n[1], -n[2])
-    return n
+    if own.lower - x > x - own.upper:
+        return n
+    return (-n[0], -n[1], -n[2])
 
 
 @kernel
@@ -259,7 +290,7 @@ def force(t, scene, e):
     else:
         # a trial step past the separation goes on smoothly; it is cut at the root of d
         f = k * d if d <= 0.0 else ramped_damping(d, d_dot, k, c, ramp)
-    if own.kind == ON_ANGLE:
+    if own.kind == ON_ANGLE or own.kind == ON_BEND:
         twist_apart(scene.F, i, j, scaled(f, n))
     else:
         p_j = arm(X, j, own.p_j)
@@ -280,7 +311,7 @@ def strike(t, scene, e):
     p_j = arm(X, own.j, own.p_j)
     r_i = minus(place(X, own.j, p_j), (X[own.i, 0], X[own.i, 1], X[own.i, 2]))
     impulse(blow, 0, r_i, p_j, n)
-    if own.kind == ON_ANGLE:
+    if own.kind == ON_ANGLE or own.kind == ON_BEND:
         for c in range(3):
             blow[0, c] = blow[0, 6 + c] = 0.0
             blow[0, 3 + c], blow[0, 9 + c] = n[c], -n[c]
@@ -330,6 +361,8 @@ def measure(t, scene, e, o):
 
 def reach(row):
     own = Own.of(row)
+    if own.kind == ON_BEND and max(map(abs, (*own.axis[:2], *own.other[:2]))) > ACROSS:
+        return Reach(forces=((own.i, own.axis), (own.j, own.other)))  # about what is across both
     if own.kind != ON_WALL:  # along the coordinate of a joint
         return Reach()
     return Reach(forces=((own.i, own.axis),), places=((own.j, own.p_j, (own.i, own.j)),))
@@ -338,6 +371,8 @@ def reach(row):
 def turning(row):
     """The wall is carried along by its body."""
     own = Own.of(row)
+    if own.kind == ON_BEND:
+        return turning_bend(row)
     if own.kind != ON_WALL:
         return Turning(frames=(own.i, own.j))
     return Turning(points=((own.j, own.p_j),), axes=((own.i, own.axis),))

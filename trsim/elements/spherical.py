@@ -7,14 +7,42 @@ reaction is the force on body j at the point, world axes.
 
 from typing import ClassVar
 
-from trsim.elements.joint import Joint, joint
+from pydantic import model_validator
+
+from trsim.elements.joint import Joint, joint, of_key
 from trsim.elements.rows import POINT
+from trsim.errors import ScenarioError
+from trsim.fields import vector
 
 
 class Spherical(Joint):
-    """A ball joint between two bodies."""
+    """A ball joint between two bodies.
+
+    axis         of the first body, as drawn, from which its bend is counted: that of a socket
+    second_axis  of the second body, as drawn: that of a stud; that of the first one unless given
+    """
 
     type: ClassVar[str] = "spherical"
+    axis: vector("-") | None = None
+    second_axis: vector("-") | None = None
+
+    @model_validator(mode="after")
+    def both_axes(self):
+        if self.second_axis is not None and self.axis is None:
+            what = "`second_axis` is counted from `axis`, and that is missing"
+            raise ScenarioError(what, "give both", ("second_axis",))
+        for key in ("axis", "second_axis"):
+            if getattr(self, key) is not None:
+                of_key(self, key)
+        return self
+
+
+def studs(spec):
+    """Unit vectors along both axes, world axes as drawn; None where it has none."""
+    if spec.axis is None:
+        return None
+    a = of_key(spec, "axis")
+    return a, a if spec.second_axis is None else of_key(spec, "second_axis")
 
 
 ELEMENT = joint(
@@ -22,6 +50,7 @@ ELEMENT = joint(
     spec=Spherical,
     rows=POINT,
     sways=True,
+    bends=studs,
     example="""
 planar: false
 bodies:

@@ -49,8 +49,11 @@ class Sprung(Spec):
         return self
 
 
-def check_damper(f):
-    """Refuse a damper that drives, or that acts at rest."""
+def check_damper(f, backward=True):
+    """Refuse a damper that drives, or that acts at rest.
+
+    backward: whether its rate may be below 0.
+    """
     if f.kind == "table":
         found = list(zip(f.x, f.y, strict=True))
         if not f.x[0] <= 0.0 <= f.x[-1]:
@@ -59,7 +62,7 @@ def check_damper(f):
             what = "without a row at a rate of 0 it may act at rest"
             raise ScenarioError(what, "add a row [0, 0]", ("damper", "table"))
     else:
-        found = [(v, of_number(f, RATE, v)) for v in (0.0, *SPEEDS)]
+        found = [(v, of_number(f, RATE, v)) for v in (0.0, *SPEEDS) if backward or v >= 0.0]
     largest = max(abs(y) for _, y in found)
     for x, y in found:
         if x == 0.0 and abs(y) > NOTHING * largest:

@@ -12,11 +12,14 @@ about b, both zero as drawn and unwrapped:
 
     omega_j - omega_i = first_angle' a + second_angle' b,     a . b = 0
 
-They are regular however far the joint bends.  A torque T along one of them is T a, or T b, on body
-j and the opposite on body i.
+The bend is the angle between the shafts, directions that turn with either body.  The angles are
+regular however far the joint bends.  A torque T along one of them is T a, or T b, on body j and the
+opposite on body i.
 """
 
 from typing import ClassVar
+
+from pydantic import model_validator
 
 from trsim.elements.contract import Reach, Row
 from trsim.elements.frames import points
@@ -36,11 +39,21 @@ class Universal(Joint):
                  by `first_angle`, which is 0 as drawn
     second_axis  on the second body, perpendicular to the first one as drawn: the second body turns
                  about it by `second_angle`, against the cross
+    shafts       directions of both shafts, of the first one towards the joint and of the second one
+                 away from it, as drawn, between which its bend is; across both pins unless given
     """
 
     type: ClassVar[str] = "universal"
     axis: vector("-")
     second_axis: vector("-")
+    shafts: tuple[vector("-"), vector("-")] | None = None
+
+    @model_validator(mode="after")
+    def both_shafts(self):
+        for k, shaft in enumerate(self.shafts or ()):
+            if not any(shaft):
+                raise ScenarioError("a direction must not be zero", "", ("shafts", k))
+        return self
 
     @property
     def x_axis(self):
@@ -64,6 +77,14 @@ def axes(spec):
     return a, direction(across)
 
 
+def shafts(spec):
+    """Unit vectors along both shafts, world axes as drawn."""
+    if spec.shafts is not None:
+        return tuple(map(direction, spec.shafts))
+    n = across(*axes(spec))
+    return n, n
+
+
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     a, b = axes(spec)
@@ -77,6 +98,7 @@ ELEMENT = joint(
     rows=(*POINT, perpendicular("a", "u", "tilt")),
     coordinates=("first_angle", "second_angle"),
     pack=pack,
+    bends=shafts,
     reach=lambda _: Reach(tilts=True),
     dear=True,
     example="""

@@ -16,7 +16,7 @@ from math import inf
 
 from trsim.assemble.equations import call_one
 from trsim.assemble.switches import LIMITS
-from trsim.assemble.travel import ANGLE, RATE_OF, TWIST
+from trsim.assemble.travel import ANGLES, RATE_OF
 from trsim.elements.contract import FLIGHT, UNLOCATED, Memory
 from trsim.kernels.lazy import internal
 from trsim.solve.march.corners import NONE, any_left, corner_root, show
@@ -129,7 +129,7 @@ def hidden_depth(s, r, setting, kind):
     depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
     if kind > RATE_OF:
         depth, kind = max(HIDDEN * setting.step_error, ROUNDING) * r.speed, kind - RATE_OF
-    return depth / s.reach if kind in (ANGLE, TWIST) else depth
+    return depth / s.reach if kind in ANGLES else depth
 
 
 @internal

@@ -35,7 +35,7 @@ from trsim.assemble.features import (
     SENSED,
     hold_sensed,
 )
-from trsim.assemble.travel import ANGLE, RATE_OF, TWIST
+from trsim.assemble.travel import ANGLES, RATE_OF
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
@@ -405,7 +405,7 @@ def chatters(s, r, b, setting, n, t1):
         own, kind = abs(s.S[s.sensed[k, ENTRY], 1]), s.sensed[k, KIND]
         if kind > RATE_OF:
             own, kind = own * r.length / r.speed, kind - RATE_OF
-        fastest = max(fastest, own * (s.reach if kind in (ANGLE, TWIST) else 1.0))
+        fastest = max(fastest, own * (s.reach if kind in ANGLES else 1.0))
     allowed = setting.step_error * r.length
     within = fastest * (t1 - chatter[LAST]) < allowed
     chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0

@@ -13,6 +13,7 @@ With d the separation of their points p_i and p_j, and u = R_i^T d what frame i 
     surface    |g'| <= |u'|                 -|u''| - |u'|^2 / (sharp + s) <= g''
                g = ball - s                      g'' <= |u''| + |u'|^2 / (reach - s)   surfaces.py
     outline    that of convex bodies                                       spread_outlines.py
+    bend, swing    angles between axes, or of the whole turn                  spread_turns.py
     edge       |g'| <= that of one end + Omega l         g'' >= likewise; it may turn round at once,
                and has no bound above                                                  seal.py
 
@@ -36,11 +37,13 @@ from trsim.assemble.dense import inverse
 from trsim.assemble.equations import call_one
 from trsim.assemble.travel import (
     ANGLE,
+    BEND,
     CLOCK,
     DISTANCE,
     EDGE,
     OUTLINE,
     SURFACE,
+    SWING,
     TRAIN,
     TWIST,
     UNKNOWN,
@@ -69,6 +72,7 @@ from trsim.solve.march.calls import (
     call_interpolate,
 )
 from trsim.solve.march.spread_outlines import of_outline
+from trsim.solve.march.spread_turns import of_bend, of_swing
 from trsim.solve.methods.displacements import first_of
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
@@ -239,6 +243,10 @@ def spread(s, r, b, what, sign, part):
         return of_angle(of_i, of_j)
     if kind == TWIST:
         return of_twist(s, e, of_i, of_j, length)
+    if kind == BEND:
+        return of_bend(s, e, of_angle(of_i, of_j), sign, length)
+    if kind == SWING:
+        return of_swing(s, e, of_angle(of_i, of_j), sign, length)
     if kind == TRAIN:
         two = TwoAngles(s, e)
         first_j = fill_curve(s, b, n, two.i_2, 0)
@@ -453,6 +461,10 @@ def spread_at_stages(s, r, b, what, sign):
         return of_angle(of_i, of_j)
     if kind == TWIST:
         return of_twist(s, e, of_i, of_j, b.h)
+    if kind == BEND:
+        return of_bend(s, e, of_angle(of_i, of_j), sign, b.h)
+    if kind == SWING:
+        return of_swing(s, e, of_angle(of_i, of_j), sign, b.h)
     if kind == TRAIN:
         two = TwoAngles(s, e)
         of_2 = of_angle(at_stages(s, r, b, two.i_2), at_stages(s, r, b, two.j_2))

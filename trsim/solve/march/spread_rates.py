@@ -5,6 +5,7 @@ velocity of a frame and its first and second rate, and u = R_i^T d what frame i 
 
     angle      |g''| <= alpha_i + alpha_j + omega_i W,        W = omega_i + omega_j
                |g'''| <= beta_i + beta_j + 2 omega_i (alpha_i + alpha_j) + (alpha_i + omega_i^2) W
+    swing      that of an angle for |g''|, of the rate that is |omega_j - omega_i|   ball_spring.py
     stroke     |g''| <= |u''|                                 |g'''| <= |u'''|
     distance   |g''| <= |u''| + |u'|^2 / |u|
                |g'''| <= |u'''| + 6 |u'| |u''| / |u| + 3 |u'|^3 / |u|^2
@@ -19,7 +20,7 @@ control points, as in spread.py.
 
 from math import inf, sqrt
 
-from trsim.assemble.travel import ANGLE, DISTANCE, RATE_OF, UNKNOWN
+from trsim.assemble.travel import ANGLE, DISTANCE, RATE_OF, SWING, UNKNOWN
 from trsim.elements.contract import Pair
 from trsim.elements.frames import cross, dot, separation, spin, two_points, velocity
 from trsim.kernels.lazy import internal
@@ -125,6 +126,9 @@ def spread_of_rate(s, r, b, what, part):
     w_i, a_i, b_i = turned(s, r, b, i, 0, length)
     w_j, a_j, b_j = turned(s, r, b, j, first_j, length)
     bent_i = a_i + w_i * w_i
+    if kind == SWING:  # of the size of a vector, which turns round at once where it is zero
+        turn = w_i + w_j
+        return turn, a_i + a_j + w_i * turn, inf
     if kind == ANGLE:
         turn, bend = w_i + w_j, a_i + a_j
         return turn, bend + w_i * turn, b_i + b_j + 2.0 * w_i * bend + bent_i * turn
