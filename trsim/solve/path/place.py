@@ -290,6 +290,6 @@ class Equations:
 def pressing(w: Scene) -> NDArray[np.int64]:
     """Rows of joints whose reactions make friction."""
     found = []
-    for _, e, _, number in w.rubbing.tolist():
+    for _, e, _, number, *_ in w.rubbing.tolist():
         found += [int(k) for k in w.con[e, FIRST_ROW : FIRST_ROW + number] if k >= 0]
     return np.array(sorted(set(found)), np.int64)
