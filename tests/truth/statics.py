@@ -244,7 +244,7 @@ def rates(balance: Balance, t: float) -> dict[str, float]:
 
 
 def turned(balance: Balance, before: float, after: float) -> bool:
-    """Whether a drive turns round between two times: a way from one to the other is no direction."""
+    """Whether a drive turns round between two times: no way from one to the other tells where."""
     first, last = rates(balance, before), rates(balance, after)
     return any(first[name] * last[name] < 0.0 for name in first)
 

@@ -98,8 +98,9 @@ def complete(s, r, b, setting, method):
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
     (values not finite; nothing was changed) or STRAYED (so long that a motion or
     a corner may be passed over, or that the step to an event is not right; the same), or LOOSE
-    (accelerations inside it are not right, or its estimate saw too little; the same) or AT_ROW (to end b.until after its start) or
-    AT_POLE (a function has no value at r.pole_t, within it; the same).
+    (accelerations inside it are not right, or its estimate saw too little; the same) or AT_ROW (to
+    end b.until after its start) or AT_POLE (a function has no value at r.pole_t, within it; the
+    same).
     """
     last, h = method[LAST_AT], b.h
     b.t, b.interpolate, b.moved = r.t, method[INTERPOLATE_AT], 0

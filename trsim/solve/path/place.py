@@ -60,6 +60,7 @@ class Place:
     inverse: Array
     v: Array  # velocities along the path
     lam_rate: Array
+    anchor: Array | None = None  # where directions were taken from
 
 
 def sliding(mechanism: Mechanism) -> Any:
@@ -250,7 +251,7 @@ class Equations:
         if inverse is None:
             return None
         x = inverse @ self.forcing(t, y, lam)
-        return Place(t, y, lam, A, inverse, x[:n], x[n:]) if w.n_v == n else None
+        return Place(t, y, lam, A, inverse, x[:n], x[n:], self.anchor) if w.n_v == n else None
 
     def along_itself(self, place: Place, dt: float) -> Place:
         """A place with friction against its own velocities, not against its way in a time dt."""
