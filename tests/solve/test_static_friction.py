@@ -171,3 +171,72 @@ def test_friction_of_a_surface_is_against_the_travel_in_space():
         across = np.cross(rub, slip) / np.linalg.norm(rub) / np.linalg.norm(slip)
         assert rub @ slip < 0 and np.linalg.norm(across) < 1e-4
     assert np.linalg.norm(turned[0] - turned[-1]) > 0.02
+
+
+TWO_WAYS = """
+planar: false
+bodies:
+  shaft: {mass: 1 kg, inertia: [0.01, 0.01, 0.01], at: [0, 0, 0]}
+joints: {sleeve: {type: cylindrical, bodies: [BODIES], at: [0, 0, 0], axis: AXIS}}
+drives:
+  push: {joint: sleeve.stroke, position: "SIGN*0.05*sin(2*pi*t)"}
+  turn: {joint: sleeve.angle, position: "SIGN*2*(1 - cos(2*pi*t))"}
+forces:
+  rub: {type: joint_friction, joint: sleeve, radius: 20 mm, friction: {LAW}}
+  weight: {type: applied_load, body: shaft, at: [0, 0, 0], direction: ACROSS, force: 30}
+gravity: [0, 0, 0]
+solver: {method: static_path, end: 1}
+output: {every: 0.013, channels: ["*"]}
+"""
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("bodies, side", [("ground, shaft", 1), ("shaft, ground", -1)])
+@pytest.mark.parametrize("axis", [(1, 0, 0), (0.48, -0.8, 0.36)])
+def test_friction_of_a_sleeve_is_along_its_helix(law, bodies, side, axis):
+    """N mu along the stroke by v / |(v, r w)|, and r N mu about it by r w: the helix turns all the
+    way round as both drives go to and fro; 30 N across press it."""
+    across = np.cross(axis, [0.2, 0.3, 0.9]).tolist()
+    text = TWO_WAYS.replace("LAW", law).replace("BODIES", bodies).replace("AXIS", str(list(axis)))
+    r = run(text.replace("SIGN", str(side)).replace("ACROSS", str(across)))
+    v = 0.05 * 2 * np.pi * np.cos(2 * np.pi * r.t)
+    u = 0.02 * 2 * 2 * np.pi * np.sin(2 * np.pi * r.t)
+    force = 0.3 * 30 / np.hypot(u, v)
+    assert r["push.force"] == pytest.approx(side * force * v, abs=1e-3 * 9)
+    assert r["turn.force"] == pytest.approx(side * force * u * 0.02, abs=1e-3 * 9 * 0.02)
+
+
+ON_A_PLANE = """
+planar: false
+bodies:
+  rail: {mass: 1 kg, inertia: [0.1, 0.1, 0.1], at: [0, 0, 0.5]}
+  slide: {mass: 1 kg, inertia: [0.1, 0.1, 0.1], at: [0, 0, 0.3]}
+  foot: {mass: 1 kg, inertia: [0.1, 0.1, 0.1], at: [0, 0, 0.1]}
+joints:
+  along: {type: prismatic, bodies: [ground, rail], at: [0, 0, 0.5], axis: [1, 0, 0]}
+  across: {type: prismatic, bodies: [rail, slide], at: [0, 0, 0.3], axis: [0, 1, 0]}
+  down: {type: prismatic, bodies: [slide, foot], at: [0, 0, 0.1], axis: [0, 0, 1]}
+drives:
+  x: {joint: along, position: "0.2*sin(2*pi*t)"}
+  y: {joint: across, position: "0.3*(1 - cos(2*pi*t))"}
+forces:
+  touch: {type: surface_contact,
+          surface: {body: ground, shape: plane, at: [0, 0, 0], x_axis: [1, 0, 0], y_axis: [0, 0, 1]},
+          ball: {body: foot, at: [0, 0, 0.1], radius: 0.1}, contact: rough}
+contact_laws:
+  rough: {normal: impact, stiffness: 1e4, exponent: 1, damping: 0, ramp: 1 mm,
+          friction: {law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1 mm/s}}
+gravity: [0, 0, -10]
+solver: {method: static_path, end: 1}
+output: {every: 0.013, channels: ["*"]}
+"""
+
+
+def test_friction_on_a_plane_in_two_directions():
+    """A foot of 10 N that two drives lead round an ellipse: 3 N against its way, at any place."""
+    r = run(ON_A_PLANE)
+    v = np.array([0.2 * np.cos(2 * np.pi * r.t), 0.3 * np.sin(2 * np.pi * r.t)])
+    force = 3.0 * v / np.linalg.norm(v, axis=0)
+    assert r["x.force"] == pytest.approx(force[0], abs=1e-3 * 3)
+    assert r["y.force"] == pytest.approx(force[1], abs=1e-3 * 3)
+    assert r["touch.force"][:, :2] == pytest.approx(-force.T, abs=1e-3 * 3)

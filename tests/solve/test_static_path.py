@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.interpolate import Akima1DInterpolator
 from scipy.optimize import brentq
 
 from tests.runs import energy_error, run
@@ -551,3 +552,21 @@ def test_points_of_a_bent_table_are_corners(side, every):
     assert r["block.velocity"][:, 1] == pytest.approx(there, abs=1e-7)
     assert np.abs(r["block.acceleration"]).max() < 1e-6
     assert events(r, CORNER)[:, 0] == pytest.approx(x[1:], abs=1e-10)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("every", [0.05, 0.3])
+def test_ends_of_a_smooth_table_that_are_held_are_corners(side, every):
+    """Rates before and behind them are those of the curve, and none; points between are smooth."""
+    x, F = np.array([0.113, 0.25, 0.335, 0.5, 0.617]), np.array([-9.0, 10.0, 7.0, -5.0, 8.0])
+    order = slice(None, None, side)
+    table = [[side * float(a), float(b)] for a, b in zip(x[order], F[order], strict=True)]
+    text = PUSHED.replace("SIDE", str(side)).replace("TABLE", str(table))
+    r = path(text.replace("interpolation: linear", "outside: hold"), every=every)
+    curve = Akima1DInterpolator(x, F)
+    assert r["y"] == pytest.approx(curve(np.clip(r.t, x[0], x[-1])) / 100 - 2 * G / 100, abs=1e-12)
+    there = np.where((r.t > x[0]) & (r.t < x[-1]), curve(np.clip(r.t, x[0], x[-1]), 1), 0.0) / 100
+    assert r["block.velocity"][:, 1] == pytest.approx(there, abs=1e-6)
+    told = events(r, CORNER)
+    assert told[:, 0] == pytest.approx(x[[0, -1]], abs=1e-10)
+    assert set(told[:, 1]) == {row(r, "push")}

@@ -179,6 +179,12 @@ def judged(s: Scene, r: Ran, v: Verdict) -> Verdict:
                 if way is not None:
                     ahead = (t - before) / PARTS
                     guess = {n: q[n] + way[n] * ahead for n in q} | balance.place_of(at)
+                if (
+                    balance.rubs
+                    and k
+                    and turned(balance, before + (t - before) * (part - 1) / PARTS, at)
+                ):
+                    raise Unfit("a drive turns round, and what rubs with it")
                 if balance.rubs and way is None:
                     if k:
                         way = {n: 0.0 for n in q} | rates(balance, at)
@@ -235,6 +241,12 @@ def rates(balance: Balance, t: float) -> dict[str, float]:
     h = 1e-6
     one, other = balance.place_of(t + h), balance.place_of(t - h)
     return {name: (one[name] - other[name]) / (2 * h) for name in one}
+
+
+def turned(balance: Balance, before: float, after: float) -> bool:
+    """Whether a drive turns round between two times: no way from one to the other tells where."""
+    first, last = rates(balance, before), rates(balance, after)
+    return any(first[name] * last[name] < 0.0 for name in first)
 
 
 LEFT_OUT = ("velocity", "acceleration", ".rate", "energy", "penetration_rate")

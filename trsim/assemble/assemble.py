@@ -380,7 +380,7 @@ def build(
         **features(at, instances),
         steep=steep(at, instances),
         **poles(at, instances),
-        rubbing=np.array(rubs, np.int64).reshape(-1, 4),
+        rubbing=np.array(rubs, np.int64).reshape(-1, 6),
         rubbed_at=rubbing.address() if rubs else 0,
         rubs_with=rubs_with.address() if rubs else 0,
         **travels(instances, contacts, at.switches),

@@ -43,10 +43,17 @@ FORCE, LEFT, STEP, FOUND, MATRIX = range(5)  # rows of s.rub_room
 
 
 def table(instances):
-    """What rubs in joints: its row, that of the joint, where its rows begin in con, how many."""
+    """What rubs in joints: its row, that of the joint, where rows of that begin in con, how many;
+    where its law is in con and the numbers of that in par."""
     place = {i.name: e for e, i in enumerate(instances) if i.section == "joints"}
     return [
-        (e, place[i.row.rubs], FIRST_ROW, len(instances[place[i.row.rubs]].element.rows))
+        (
+            e,
+            place[i.row.rubs],
+            FIRST_ROW,
+            len(instances[place[i.row.rubs]].element.rows),
+            *i.element.slides,
+        )
         for e, i in enumerate(instances)
         if i.row.rubs
     ]

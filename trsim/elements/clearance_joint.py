@@ -131,7 +131,7 @@ def pack(name, spec, at):
     jump = Own.columns["friction"].at if law.friction.jumps else -1
     contact = Contact(
         light, exponent, spec.clearance, law.slowest_impact, chi, state,
-        law.friction.slope, jump, law.bearing_radius,
+        law.friction.slope, jump, law.bearing_radius, ramp=law.friction.ramp,
     )  # fmt: skip
     return Row(*own, contact, states=(state,), travel="distance")
 

@@ -185,6 +185,7 @@ class Contact(NamedTuple):
     states: int = 1  # how many such entries there are
     known_to: float = inf  # m, the depth to which its law is given
     lost: int = -1  # entry of z with what damping has taken, J; what friction has, behind it
+    ramp: float = 0.0  # m/s, of the sliding speed, over which its friction comes in; 0: it has none
 
 
 class ContactNumbers(Columns, par="contact_par"):
@@ -197,6 +198,7 @@ class ContactNumbers(Columns, par="contact_par"):
     slowest_impact: f8
     arm: f8  # turns its depth, an angle, into the length that errors are weighed with; or 1
     damping: f8
+    ramp: f8
 
 
 class Load(Columns, par="loads"):

@@ -70,6 +70,11 @@ class Friction(Spec):
         return mu / (v1 - v0)
 
     @property
+    def ramp(self) -> float:
+        """m/s, over which it comes in next to rest; 0 where it does otherwise."""
+        return float(self.v1 - self.v0) if self.slope > 0.0 else 0.0  # type: ignore[operator]
+
+    @property
     def jumps(self) -> bool:
         """Whether it jumps at rest."""
         return self.law == "coulomb"

@@ -108,7 +108,7 @@ class Model(Packed):
     scale_kind: I1  # (n_y) which unit weighs an entry of y in the error norm
     scale: A1  # (n_y) lever or magnitude that goes with it
     contact: I1  # (n_contacts) row e of each element with a gap
-    contact_par: A2  # (n_contacts, 7) ContactNumbers of contract.py
+    contact_par: A2  # (n_contacts, 8) ContactNumbers of contract.py
     contact_state: I1  # (n_contacts) first entry of z to reset at a touch, or -1
     contact_states: I1  # (n_contacts) how many there are
     contact_width: I1  # (n_contacts) its output columns
@@ -138,8 +138,8 @@ class Model(Packed):
     sensed: I2  # (n, 3) sensors that meet corners
     slots: i8  # the most that a function has whose corners they meet
     held: I1  # (corners) where in tab it stands what each is held on
-    # (n, 4) what rubs in joints: its row, that of the joint, where rows of that begin in con, how
-    # many
+    # (n, 6) what rubs in joints: its row, that of the joint, where rows of that begin in con, how
+    # many; the columns of its law in con and of the numbers of that in par
     rubbing: I2
     rubbed_at: i8  # address of what finds their friction forces; 0 where nothing rubs   rubbing.py
     rubs_with: i8  # and of those that go with given multipliers
@@ -214,6 +214,7 @@ class Scene(Model):
     rubbed: A1  # (N) friction force along the sliding speed
     by_rubbing: A2  # (n, 6 n) derivatives of the reactions against the friction forces
     rub_room: A2  # (n + 4, n or 6) a small system
+    rub_branch: A2  # (2, n) branches of their laws at both ends of a step
     before_rubbing: T6  # (n, 6) F of all other forces
     moved: T6  # (n, 6) what multipliers do to the bodies, axes of the solve
     free: T6  # (n, 6) accelerations without constraints, axes of the solve
@@ -284,6 +285,7 @@ def scene(model: Model) -> Scene:
         (("rubbed",), (whose,)),
         (("by_rubbing",), (rubs, 6 * rubs)),
         (("rub_room",), (rubs + 4, max(rubs, 6) if rubs else 0)),
+        (("rub_branch",), (2, rubs)),
         (("before_rubbing",), (n if rubs else 0, 6)),
         (("E",), (N_STORED,)),
         (("swing_box",), (max(model.wave_slots, model.pulse_slots), 4)),

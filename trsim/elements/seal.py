@@ -10,6 +10,9 @@ The elastic load is integrated as it is, over the part of the line that is press
 its length alone, however the contact breaks into patches.  Damping and friction are summed over
 Gauss's places on that part, or all of it over `springs` equal pieces of the line.  Forces act where
 the line's places are seen on the plane, on both bodies alike.
+
+Friction has a corner where a place of the line comes to `full_from`.  Steps end where the slowest
+of three places does: of a line that slides as a whole no other corner is left inside them.
 """
 
 from math import sqrt
@@ -23,6 +26,7 @@ from trsim.elements.contract import (
     FLIGHT,
     FRICTION,
     IMPACTS,
+    WHOLE,
     Channel,
     Contact,
     Element,
@@ -53,6 +57,7 @@ from trsim.laws.friction import CODES, N_PARAMETERS, friction_force
 from trsim.laws.seal import NODES, WEIGHTS, line_load, pressed_part
 
 MOST = 1000  # springs
+ON_RAMP, FULL = 1.0, 2.0  # branches of friction: FULL along the whole line
 
 
 class SealLine(Spec):
@@ -152,7 +157,9 @@ def pack(name, spec, at):
         along=at.axes(j, across), length=length, springs=spec.springs or 0,
     )  # fmt: skip
     stiffness = spec.load * length / spec.at**spec.exponent
-    return Row(*own, Contact(stiffness, spec.exponent, float("inf"), 0.0, 0.0), travel="edge")
+    ramp = spec.full_from if spec.friction > 0.0 else 0.0
+    contact = Contact(stiffness, spec.exponent, float("inf"), 0.0, 0.0, ramp=ramp)
+    return Row(*own, contact, travel="edge")
 
 
 # --- kernels -----------------------------------------------------------------------------
@@ -237,6 +244,9 @@ def force(t, scene, e):
     low, high = pressed_part(x_0, x_1)
     if low == high:
         return
+    if own.friction_law != 0 and own.branch != WHOLE:
+        left = scene.left
+        left[e] = max(left[e], full_beyond(own, slowest_of(scene, e)))
     if own.springs == 0:
         whole, first, _ = line_load(x_0 / own.at, x_1 / own.at, own.exponent)
         u = first / whole if whole > 0.0 else 0.0
@@ -258,6 +268,39 @@ def gap(t, scene, e):
     u, x = (0.0, x_0) if x_0 >= x_1 else (1.0, x_1)
     _, _, rate, _ = meets(scene, e, n, plus(p_j, scaled(u, along)), x)
     scene.gap[e, 0], scene.gap[e, 1] = x, rate
+
+
+@internal
+def full_beyond(own, slowest):
+    """How far friction has left its branch, m/s: full along the whole line, or on its ramp."""
+    late = own.friction[2] - slowest
+    return late if own.branch == FULL else -late
+
+
+@internal
+def slowest_of(scene, e):
+    """The least sliding speed of both ends of the line and its middle."""
+    n, p_j, along, x_0, x_1 = ends(scene, e)
+    least = 1e300
+    for k in range(3):
+        u = 0.5 * k
+        _, _, _, v_t = meets(scene, e, n, plus(p_j, scaled(u, along)), x_0 + u * (x_1 - x_0))
+        least = min(least, dot(v_t, v_t))
+    return sqrt(least)
+
+
+@kernel
+def corners(t, scene, e):
+    out, own = scene.corner, Own(scene, e)
+    out[e, 0] = -1.0
+    if own.phase == FLIGHT or own.friction_law == 0:
+        return
+    slowest = slowest_of(scene, e)
+    if own.branch == WHOLE:
+        out[e, 1] = FULL if slowest > own.friction[2] else ON_RAMP
+        return
+    out[e, 0] = full_beyond(own, slowest)
+    out[e, 1] = ON_RAMP if own.branch == FULL else FULL
 
 
 @kernel
@@ -353,7 +396,7 @@ ELEMENT = Element(
     doubts=doubts,
     slides=(Own.columns["friction_law"].at, Own.columns["friction"].at),
     loads={"normal_force": "contact force"},
-    kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},
+    kernels={"force": force, "gaps": gap, "corners": corners, "energy": energy, "measure": measure},
     example="""
 planar: false
 bodies:

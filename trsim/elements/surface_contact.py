@@ -183,6 +183,7 @@ def row_of(name, spec, at, law, normal, numbers):
         states=2,
         known_to=inf if law.table is None else law.table[-1][0],
         lost=lost,
+        ramp=law.friction.ramp,
     )
     states = tuple(k for first in (state, lost) if first >= 0 for k in (first, first + 1))
     travel = "surface" if numbers["outline"] < 0 else "outline"

@@ -35,6 +35,7 @@ from trsim.solve.march.calls import (
     SEARCH_AT,
     SECTIONS_AT,
     SOFTEN_AT,
+    STAGES_AT,
     STEP_AT,
     TURN_AT,
     call_book,
@@ -58,6 +59,7 @@ from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS, SLOPE
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
 from trsim.solve.march.turns import BEYOND, BRIEF, beats_in, pulse, too_far, unseen
+from trsim.solve.march.unseen import errs_unseen
 from trsim.solve.march.watch import heard, take_sides
 from trsim.solve.march.works import exchanged
 
@@ -96,8 +98,9 @@ def complete(s, r, b, setting, method):
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
     (values not finite; nothing was changed) or STRAYED (so long that a motion or
     a corner may be passed over, or that the step to an event is not right; the same), or LOOSE
-    (accelerations inside it are not right; the same) or AT_ROW (to end b.until after its start) or
-    AT_POLE (a function has no value at r.pole_t, within it; the same).
+    (accelerations inside it are not right, or its estimate saw too little; the same) or AT_ROW (to
+    end b.until after its start) or AT_POLE (a function has no value at r.pole_t, within it; the
+    same).
     """
     last, h = method[LAST_AT], b.h
     b.t, b.interpolate, b.moved = r.t, method[INTERPOLATE_AT], 0
@@ -110,6 +113,8 @@ def complete(s, r, b, setting, method):
         return WORTHLESS
     if restless(b, setting, h):
         return undone(r, worst, worst_rate, STRAYED)
+    if unseen_error(s, r, b, setting, method, h):
+        return undone(r, worst, worst_rate, LOOSE)
     if s.steep > 0 and strayed(s, r, setting, h):
         return undone(r, worst, worst_rate, STRAYED)
     if s.status[4] > 0 and leaked(s, r, b, setting):
@@ -226,6 +231,13 @@ def restless(b, setting, h):
 
 
 @internal
+def unseen_error(s, r, b, setting, method, h):
+    """Whether a step of DOP853 that may be shorter errs by what its estimate did not see."""
+    explicit = method[STAGES_AT] > 0 and shorter_may(setting, h)
+    return explicit and errs_unseen(s, r, b, h)
+
+
+@internal
 def strayed(s, r, setting, h):
     """Whether a smooth prescribed motion went on between the stages of a step as none of them saw:
     its end is far from the constraints."""
@@ -326,7 +338,7 @@ def exact(s, r, b, setting, method, theta):
         if not error < NO_STEP:
             return 0.0, 0.0, 0.0
         projected = landed(s, r, b, method, t + h1, h1)
-        if restless(b, setting, h1):
+        if restless(b, setting, h1) or unseen_error(s, r, b, setting, method, h1):
             return -1.0, 0.0, 0.0
         if gap_of < 0:
             if method[BEYOND_AT] == 0:

@@ -75,13 +75,13 @@ def measure_inside(s, r, b, at, theta):
 
 @internal
 def astray(s, r, b, setting, earlier, theta):
-    """Whether the forces measured last, at theta of a step in touch, are none of the motion: its
-    accelerations there are not the rates of what is interpolated.
+    """Whether the forces measured last, at theta of a step in touch or with friction in joints, are
+    none of the motion: its accelerations there are not the rates of what is interpolated.
 
     What dies out faster than a step, as sliding does in the ramp of friction, is right at its end
     long before it is right inside.
     """
-    if untouched(s, r):
+    if untouched(s, r) and s.rubbing.shape[0] == 0:
         return False
     y, P, _, _, _ = either_step(r, b, earlier)
     h = r.earlier_h if earlier else b.h

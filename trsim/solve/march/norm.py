@@ -13,13 +13,17 @@ sqrt(a length), or that length per run.  A fall would get there; a stiff spring 
 
 import numpy as np
 
-from trsim.elements.contract import SCENE, ContactNumbers, Memory, compiled
+from trsim.elements.contract import FLIGHT, SCENE, ContactNumbers, Memory, compiled
 from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
 from trsim.elements.scene import LENGTH as LENGTH_SCALE
 from trsim.elements.scene import SPEED as SPEED_SCALE
 from trsim.kernels import signatures as types
 from trsim.kernels.lazy import internal
+from trsim.solve.march.accelerations import largest
 from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
+
+AHEAD = 1.0  # times the change of speed that accelerations make in a step: what it may come to
+RAMPS = 20.0  # a step may err by 10 % of friction at a tolerance of 0.01, by 2.7e-6 at 1e-6
 
 
 @internal
@@ -32,7 +36,7 @@ def weights(s, r, b, setting, h):
     if r.top_speed < r.speed_cap:
         follow(s, r, h)
     length, tolerance = r.length, setting.step_error
-    speed = min(r.speed, felt(s, r))
+    speed = min(r.speed, felt(s, r), rubbed(s, r, h))
     for c in range(b.weight.size):
         b.weight[c] = weighed(s, length, speed, tolerance, c)
 
@@ -53,6 +57,21 @@ def felt(s, r):
         if depth > 0.0 and first > 0.0 and chi > 0.0:
             share = (depth / max(r.impact[c], depth)) ** own.exponent
             speed = min(speed, own.arm * first / (chi * share))
+    return speed
+
+
+@internal
+def rubbed(s, r, h):
+    """The unit of velocities that friction asks for where a step may come to its ramp: RAMPS of it,
+    as an error of the sliding speed is that much of the friction there."""
+    speed, reach = 1e300, -1.0
+    for c in range(s.contact.size):
+        ramp = ContactNumbers(s, c).ramp
+        if ramp > 0.0 and Memory(r, s.contact[c]).phase != FLIGHT:
+            if reach < 0.0:
+                reach = AHEAD * h * largest(s, r.yd, 0.0)
+            if -r.corner[c] < ramp + reach:
+                speed = min(speed, RAMPS * ramp)
     return speed
 
 

@@ -4,7 +4,7 @@ Order 8, error estimate from embedded orders 5 and 3, dense output of order 7 fr
 stages, built only when asked for.    [HairerNorsettWanner1993]
 """
 
-from math import comb, sqrt
+from math import comb, inf, sqrt
 
 import numpy as np
 
@@ -60,6 +60,7 @@ for _s in range(len(_sums)):
     FOURS[_s] = -(-_columns.size // 4)
     IN_FOURS[_s, : _columns.size], WEIGHTS[_s, : _columns.size] = _columns, _sums[_s, _columns]
 IN_ERROR = np.flatnonzero((E3 != 0.0) | (E5 != 0.0))  # stages that an error estimate sees
+HUGE = 1e200  # squares of errors: such stages are no motion
 FAR = 2.5  # rad: the dense output errs by three times the estimate, of longer steps by more
 # of the last term of the dense output: what is missing.  1/1000 to 1/600 of vibrations w and forced
 # motions W, wherever it is no more than rounding: w h from 0.1 to 4, W h from 0.1 to 1
@@ -121,6 +122,8 @@ def step(scene, r, b, setting, t, h):
             error3 += (K[THIRD, c] * weight[c]) ** 2
     stage(K, y, h, 12, y1)
     bottom = error5 + 0.01 * error3
+    if not bottom < HUGE:  # nor is what is left of it by overflow
+        return inf
     error = abs(h) * error5 / sqrt(bottom * max(counted, 1)) if bottom > 0.0 else 0.0
     if held(scene, r, h):
         error = max(error, of_accelerations(scene, r, b, setting, h))

@@ -15,7 +15,16 @@ from trsim.assemble.equations import gaps, poses
 from trsim.assemble.features import HELD_FROM, HELD_TO, OFFSET, SENSED, hold_all
 from trsim.assemble.switches import CHANNEL, LIMITS, TIME
 from trsim.elements.contract import Load
-from trsim.laws.functions import BY_SENSORS, BY_TIME, FREE, HELD_OF_TABLE, TABLE
+from trsim.laws.functions import (
+    BY_SENSORS,
+    BY_TIME,
+    FREE,
+    HELD_OF_TABLE,
+    OF_TABLE,
+    POINTS,
+    TABLE,
+    VARIABLE,
+)
 from trsim.solve.diagnose.linearised import mass_matrix
 from trsim.solve.path.balance import unbalanced
 from trsim.solve.path.place import Equations, Place
@@ -26,7 +35,7 @@ AT_REST = 1e-6  # of the mechanism's size in the time of the path: a slower slid
 FLAT = 1e-9  # of the largest eigenvalue: one that is rounding
 NEARLY = 0.01  # of an arch that a gap makes in a step: what its cubic may be wrong by
 FLATTEST = 1e-12  # of the mechanism's size: an arch that is rounding
-CONTACT, PIECE, RUB, WATCH, SENSE = "contact", "piece", "rub", "watch", "sense"
+CONTACT, PIECE, RIM, RUB, WATCH, SENSE = "contact", "piece", "rim", "rub", "watch", "sense"
 
 
 @dataclass(frozen=True)
@@ -54,6 +63,8 @@ class Looks:
         self.value = [event.value for event in self.events]
         self.columns = {c.name: c.start for c in equations.mechanism.columns}
         self.places = watched_places(w, bent_tables(equations.mechanism))
+        self.rims = rimmed_tables(w, equations.mechanism)
+        self.over = [0.0] * len(self.rims)
         self.sense = 0.0
 
     def gaps(self, place: Place) -> dict[int, tuple[float, float]]:
@@ -125,6 +136,16 @@ class Looks:
         w.tab[w.held] = before
         return np.asarray(found)
 
+    def outside(self) -> list[float]:
+        """Of smooth tables that hold their end values, at the poses of the scene: -1 below their
+        first point, 1 above the last, 0 between."""
+        tab, found = self.work.tab, []
+        for o in self.rims:
+            x, n = float(self.work.S[int(tab[o + VARIABLE]), 0]), int(tab[o + POINTS])
+            first, last = tab[o + OF_TABLE + 1], tab[o + OF_TABLE + n]
+            found.append(-1.0 if x < first else 1.0 if x > last else 0.0)
+        return found
+
     def take(self, place: Place, out: Array | None) -> None:
         """Hold what is so at a place where a path begins."""
         for e, (g, _) in self.gaps(place).items():
@@ -141,6 +162,7 @@ class Looks:
     def hold_all(self, place: Place) -> None:
         """Hold functions where they go on along the path."""
         poses(self.work, self.moving(place))
+        self.over = self.outside()
         self.hold(place.t, BY_TIME)
         self.hold(place.t, BY_SENSORS)
 
@@ -154,6 +176,11 @@ class Looks:
         for k in np.flatnonzero(now != self.work.tab[self.places]).tolist():
             if now[k] != FREE and self.work.tab[self.places[k]] != FREE:
                 found.append(Change(PIECE, int(k), float(now[k])))
+        if self.rims:
+            poses(self.work, place.y)
+            for k, side in enumerate(self.outside()):
+                if side != self.over[k]:
+                    found.append(Change(RIM, k, side))
         for k, slip in enumerate(self.slips(place).tolist()):
             if abs(slip) > self.slow and np.sign(slip) == -self.direction[k]:
                 found.append(Change(RUB, k, float(np.sign(slip)), slip))
@@ -185,10 +212,9 @@ class Looks:
             turns_through(x, y, h, -1.0 if inside else 1.0, self.work.size) for x, y, inside in ends
         )
 
-    def whose(self, k: int) -> int:
-        """The instance that has the function of a piece; -1 of none."""
+    def whose(self, place: int) -> int:
+        """The instance that has the function of a piece, held at this place; -1 of none."""
         w, mechanism = self.work, self.eq.mechanism
-        place = self.places[k]
         for row in w.feature:
             if place in w.held[row[HELD_FROM] : row[HELD_TO]]:
                 name = next((f.name for f in mechanism.functions if f.offset == row[OFFSET]), "")
@@ -237,6 +263,16 @@ def bent_tables(mechanism: Any) -> set[int]:
         for one in mechanism.functions
         if one.spec.kind == "table" and one.spec.interpolation == "linear"
     }
+
+
+def rimmed_tables(w: Any, mechanism: Any) -> list[int]:
+    """Offsets of smooth tables of sensors that hold their end values: they are bent there."""
+    return [
+        one.offset
+        for one in mechanism.functions
+        if one.spec.kind == "table" and one.spec.interpolation != "linear"
+        and one.spec.ends == "hold" and w.tab[one.offset] == TABLE and w.tab[one.offset + VARIABLE] >= 0
+    ]  # fmt: skip
 
 
 def watched_places(w: Any, bent: set[int]) -> NDArray[np.int64]:

@@ -9,6 +9,7 @@ halving.  Where steps shrink to nothing there is no balance ahead: fold.py looks
 
 import time
 from collections.abc import Generator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -25,6 +26,7 @@ from trsim.solve.march.features import next_time
 from trsim.solve.outcome import Block, Outcome, new_record, settings, statistics
 from trsim.solve.path.balance import travel
 from trsim.solve.path.begin import begin, check
+from trsim.solve.path.between import Between
 from trsim.solve.path.changes import RUB, Change, Looks, stability
 from trsim.solve.path.fold import fold
 from trsim.solve.path.let_go import Held, kept, why
@@ -73,6 +75,8 @@ class Path:
         self.looks = Looks(self.eq, self.end)
         self.results = Results(self.eq, self.every)
         self.log = Log(self.looks, self.results)
+        self.between = Between(self.results, self.setting.missed)
+        self.between.solve = self.inside
         self.hears = any(event.kind == "channel" for event in self.looks.events)
         self.before: Place | None = None  # behind the place that is known last, on a smooth piece
         self.next_row, self.steps, self.rejected = 1, 0, 0
@@ -116,6 +120,7 @@ class Path:
             yield from self.block(BLOCK)
         else:
             self.kept(place, None)
+            self.between.end()
         yield from self.block(0)
 
     def first(self) -> Place:
@@ -209,6 +214,23 @@ class Path:
             for _ in range(2 if eq.surfaces else 1):
                 there = eq.along_itself(there, SEEN * self.end)
         return there
+
+    def inside(self, first: Place, last: Place, t: float) -> Place | None:
+        """The place at t between two that are known, with directions from where they were taken; of
+        how the path goes on there nothing is found, unless friction that turns needs it."""
+        eq, h = self.eq, t - first.t
+        anchor = eq.anchor
+        eq.anchor = anchor if last.anchor is None else last.anchor
+        try:
+            if eq.turning and self.looks.all_slide(first) and self.is_full(first):
+                return self.reached(first, t)
+            y = eq.at_time(eq.moved(first.y, h * first.v), first.t, t)
+            found = eq.solved(t, y, first.lam + h * first.lam_rate, first.inverse)
+        finally:
+            eq.anchor = anchor
+        if found is None or self.way(y, found[0]) > max(ASTRAY * self.way(first.y, y), BESIDE):
+            return None
+        return replace(first, t=t, y=found[0], lam=found[1])
 
     def is_full(self, place: Place) -> bool:
         """Whether friction on all surfaces is that of full sliding."""
@@ -339,6 +361,7 @@ class Path:
         self.before = place
         if not smooth:
             self.kept(trial, None)
+            self.between.end()
             self.before = None
         else:
             self.judge(trial)
@@ -354,6 +377,7 @@ class Path:
         row = round(place.t / self.every)
         at_row = row >= self.next_row and abs(place.t - row * self.every) <= SAME * self.end
         out = self.results.keep(place, a, at_row)
+        self.between.add(place, out)
         if at_row:  # between rows a path may have a corner, or an end at which it has no speed
             steady = slope(self.before, place, after, STEADY * self.every)
             self.results.inertia(place, steady)

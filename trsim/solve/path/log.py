@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
 from trsim.assemble.switches import UserEvent
+from trsim.laws.functions import HELD_OF_TABLE
 from trsim.solve.march import record as rec
-from trsim.solve.path.changes import CONTACT, PIECE, RUB, SENSE, WATCH, Change, Looks
+from trsim.solve.path.changes import CONTACT, PIECE, RIM, RUB, SENSE, WATCH, Change, Looks
 from trsim.solve.path.place import Place
 from trsim.solve.path.results import DAMPERS, INERTIA, Results
 from trsim.statuses import Ended
@@ -45,7 +46,9 @@ class Log:
             looks.closed[change.which] = change.to > 0.0
             kind, row = rec.ONSET if change.to > 0.0 else rec.SEPARATION, change.which
         elif change.kind == PIECE:
-            kind, row = rec.CORNER, looks.whose(change.which)
+            kind, row = rec.CORNER, looks.whose(int(looks.places[change.which]))
+        elif change.kind == RIM:
+            kind, row = rec.CORNER, looks.whose(looks.rims[change.which] + HELD_OF_TABLE)
         elif change.kind == RUB:
             looks.direction[change.which] = change.to
             kind, row = rec.TURNS, int(self.eq.work.rubbing[change.which, 0])

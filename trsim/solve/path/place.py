@@ -68,6 +68,7 @@ class Place:
     inverse: Array
     v: Array  # velocities along the path
     lam_rate: Array
+    anchor: Array | None = None  # where directions were taken from
 
 
 def sliding(mechanism: Mechanism) -> Any:
@@ -260,7 +261,7 @@ class Equations:
         if inverse is None:
             return None
         x = inverse @ self.forcing(t, y, lam)
-        return Place(t, y, lam, A, inverse, x[:n], x[n:]) if w.n_v == n else None
+        return Place(t, y, lam, A, inverse, x[:n], x[n:], self.anchor) if w.n_v == n else None
 
     def along_itself(self, place: Place, dt: float) -> Place:
         """A place with friction against its own velocities, not against its way in a time dt."""
@@ -300,6 +301,6 @@ class Equations:
 def pressing(w: Scene) -> NDArray[np.int64]:
     """Rows of joints whose reactions make friction."""
     found = []
-    for _, e, _, number in w.rubbing.tolist():
+    for _, e, _, number, *_ in w.rubbing.tolist():
         found += [int(k) for k in w.con[e, FIRST_ROW : FIRST_ROW + number] if k >= 0]
     return np.array(sorted(set(found)), np.int64)

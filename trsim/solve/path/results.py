@@ -49,6 +49,9 @@ class Results:
         for c in mechanism.columns:
             rates[c.start : c.start + c.size] = "/s" in c.unit
         self.rates = np.concatenate([rates, rates[w.vector]])
+        self.energies = np.zeros(len(self.rates), bool)
+        for c in mechanism.columns:
+            self.energies[c.start : c.start + c.size] = c.unit == "J"
         self.peak = np.zeros((rec.N_PEAK, w.n_out + squares))
         self.peak[rec.PEAK_MAX], self.peak[rec.PEAK_MIN] = -1e300, 1e300
         self.rows: list[Array] = []
@@ -124,14 +127,19 @@ class Results:
     def worked(self, place: Place) -> None:
         """Add the works since the place before, by the forces at both."""
         if self.last is not None:
-            w, there = self.w, place.y.copy()
-            travel(w, self.last.y, there, 1.0)
-            way, dt = there[w.n_q : w.n_q + w.n_v], place.t - self.last.t
             # multipliers of a place at which friction turns round are those of the way to it
-            first = place if self.turned else self.last
-            self.works += 0.5 * (self.work(first, way, dt) + self.work(place, way, dt))
-            self.turned = self.turned and dt == 0.0
+            first = place if self.turned else None
+            self.works += self.works_between(self.last, place, first)
+            self.turned = self.turned and place.t == self.last.t
         self.last = place
+
+    def works_between(self, before: Place, place: Place, with_forces: Place | None = None) -> Array:
+        """The works from a place to another, by the forces at both, or at the first by others."""
+        w, there = self.w, place.y.copy()
+        travel(w, before.y, there, 1.0)
+        way, dt = there[w.n_q : w.n_q + w.n_v], place.t - before.t
+        first = self.work(with_forces or before, way, dt)
+        return np.asarray(0.5 * (first + self.work(place, way, dt)))
 
     def keep(self, place: Place, a: Array, row: bool) -> Array:
         """Take a place that is known with its accelerations: works, peaks, steps, inertia."""
@@ -147,15 +155,28 @@ class Results:
         self.jumped, self.residual = False, float(energies[-1])
         self.largest_energy = max(self.largest_energy, float(np.abs(energies[:-1]).max()))
         self.largest_residual = max(self.largest_residual, abs(float(energies[-1])))
-        squares = [np.linalg.norm(out[k : k + 3]) for k in self.w.vector.tolist()]
-        for k, x in ((rec.PEAK_MAX, 1.0), (rec.PEAK_MIN, -1.0)):
-            values = np.array([*out, *squares])
-            further = (x * values > x * self.peak[k]) & (row | ~self.rates)
-            self.peak[k, further], self.peak[k + 1, further] = values[further], place.t
+        self.take(place.t, out, row)
         self.now = out
         if row:
             self.rows.append(np.concatenate([[place.t], out]))
         return out
+
+    def relative(self, out: Array) -> Array:
+        """Channels with the error of the energy book from the start on."""
+        out[-1] -= self.zero
+        return out
+
+    def with_magnitudes(self, out: Array) -> Array:
+        """Channels and, behind them, the magnitudes of vectors among them."""
+        return np.array([*out, *(np.linalg.norm(out[k : k + 3]) for k in self.w.vector.tolist())])
+
+    def take(self, t: float, out: Array, row: bool, known: bool = True) -> None:
+        """Take the channels of one time into their extremes: rates at rows, works where known."""
+        values = self.with_magnitudes(out)
+        for k, x in ((rec.PEAK_MAX, 1.0), (rec.PEAK_MIN, -1.0)):
+            further = (x * values > x * self.peak[k]) & (row | ~self.rates)
+            further &= known | ~self.energies
+            self.peak[k, further], self.peak[k + 1, further] = values[further], t
 
     def touching(self, place: Place, out: Array, closed: dict[int, bool]) -> None:
         """A line for each contact that is in."""

@@ -430,7 +430,7 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     moving = max(fastest, CREEP * reach / end)
     speed = max(fastest, np.sqrt(hardest * reach), reach / end)
     depth = []
-    for K, n, mass, c, slowest, arm, _ in model.contact_par:
+    for K, n, mass, c, slowest, arm, *_ in model.contact_par:
         approach = min(max(slowest, 1e-3), speed) / arm
         touch = ((n + 1.0) * mass * approach**2 / (2.0 * K)) ** (1.0 / (n + 1.0))
         depth.append(min(max((force * arm / K) ** (1.0 / n), touch), c))
