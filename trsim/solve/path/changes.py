@@ -271,7 +271,8 @@ def rimmed_tables(w: Any, mechanism: Any) -> list[int]:
         one.offset
         for one in mechanism.functions
         if one.spec.kind == "table" and one.spec.interpolation != "linear"
-        and one.spec.ends == "hold" and w.tab[one.offset] == TABLE and w.tab[one.offset + VARIABLE] >= 0
+        and one.spec.ends == "hold" and w.tab[one.offset] == TABLE
+        and w.tab[one.offset + VARIABLE] >= 0
     ]  # fmt: skip
 
 
