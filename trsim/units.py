@@ -217,6 +217,9 @@ def quantity(text: str, names: Any = ()) -> tuple[float, str] | None:
         words = re.findall(r"[A-Za-z_]\w*", rest)
         if any(word in names or word not in {**BASE, **DERIVED} for word in words) or not words:
             return None
+        if re.match(r"/\s*[0-9]", rest):  # 2/12 kg
+            what = f"a unit stands behind one number: {described(text)}"
+            raise ScenarioError(what, "Write 0.5 kg for 1/2 kg, or 1/2 alone, in SI.")
         rest = f"1{rest}"
     elif rest and not re.match(r"[A-Za-zµμ°%]|1\s*/", rest):
         return None

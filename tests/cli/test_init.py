@@ -106,6 +106,22 @@ def test_a_folder_or_a_file_of_ones_own_name(trsim, answer, here):
     assert told["files"] == ["first/sweep.yaml", "first/pendulum.yaml"]
 
 
+@pytest.mark.parametrize(
+    "name, template, file",
+    [
+        ("crane.yaml", "crane", "crane.yaml"),
+        ("sub/gear_pair.yml", "gear-pair", "sub/gear_pair.yml"),
+        ("sub/crane", "crane", "sub/crane/crane.yaml"),
+        ("./crane", "crane", "crane/crane.yaml"),
+        ("first.yaml", "pendulum", "first.yaml"),
+    ],
+)
+def test_a_path_that_ends_in_a_template(name, template, file, answer):
+    _, told = answer("init", name)
+    assert (told["template"], told["files"]) == (template, [file])
+    assert f"trsim run {Path(file).name}" in told["commands"]
+
+
 @pytest.mark.parametrize("word", ["four_bar", "Four Bar", "fourbar", "four-bar"])
 def test_ways_to_write_a_name(word, answer):
     assert answer("init", "--template", word)[1]["template"] == "four-bar"
@@ -134,6 +150,8 @@ def test_a_link_that_leads_nowhere_is_something(trsim, here):
     [
         (("--template", "fuor-bar"), 2, "Did you mean 'four-bar'?"),
         (("fuor-bar",), 2, "--template"),
+        (("sub/fuor-bar",), 2, "--template"),
+        (("pendullum.yaml",), 2, "--template"),
         (("mine.yaml", "--template", "reverser"), 2, "several files"),
         (("mine.yaml", "--template", "sweep"), 2, "several files"),
         (("pendulum", "--list"), 2, "--list"),

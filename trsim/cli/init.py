@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from trsim.scenario.shipped import Template
 
 DEFAULT = "pendulum"
+FILES = (".yaml", ".yml")
 
 
 def names(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:
@@ -34,8 +35,8 @@ def command(answer: Answer, name: str | None, word: str | None, listed: bool, fo
     """Write a commented scenario to begin with, into the current folder or a folder NAME.
 
     NAME may also be that of a template, or a file: `trsim init four-bar`,
-    `trsim init mine.yaml --template four-bar`.  Without NAME and --template the templates are
-    listed.
+    `trsim init crane.yaml`, `trsim init mine.yaml --template four-bar`.  Without NAME
+    and --template the templates are listed.
     """
     from trsim.scenario.shipped import template
 
@@ -80,11 +81,13 @@ def asked(name: str | None, word: str | None) -> tuple[str, str | None]:
 
     if word is not None or name is None:
         return word or "", name
-    if named(name):
-        return name, None
-    if (close := closest(Path(name).name, TEMPLATES)) and os.sep not in name:
-        what = f"no template is named {described(name)}"
-        hint = f"Did you mean '{close}'?  For a folder of that name give --template as well."
+    path = Path(name)
+    last = path.stem if path.suffix in FILES else path.name
+    if named(last):
+        return last, None if name == last else name
+    if close := closest(last, TEMPLATES):
+        what = f"no template is named {described(last)}"
+        hint = f"Did you mean '{close}'?  For something of that name give --template as well."
         raise UsageError(what, hint)
     return DEFAULT, name
 
@@ -96,7 +99,7 @@ def placed(found: "Template", name: str | None) -> tuple[Path, "Template"]:
     if name is None:
         return Path(found.name if found.name in FOLDERS else ""), found
     target = Path(name)
-    if target.suffix not in (".yaml", ".yml"):
+    if target.suffix not in FILES:
         return target, found
     if len(found.files) > 1:
         what = f"the template {found.name} has several files, {name} is one"
