@@ -95,3 +95,22 @@ def test_the_same_whatever_the_rows(rows):
         for k in range(first.place[name][1]):
             one, other = peaks(first, name, k)[[0, 2]], peaks(second, name, k)[[0, 2]]
             assert one == pytest.approx(other, abs=2 * ENOUGH * np.ptp(one) + 1e-9)
+
+
+@pytest.mark.parametrize("word", ["position", "velocity"])
+@pytest.mark.parametrize("every", [0.1, 0.5])
+def test_a_drive_that_is_back_at_every_row(word, every):
+    """It rests at every row, as if it had never moved, and goes 1 rad and back in between."""
+    motion = {"position": "{}*(1 - cos(20*pi*t))/6", "velocity": "{}*20*pi*sin(20*pi*t)/6"}[word]
+    r = path(every=every, motion=f'{word}: "{motion}"')
+    assert peaks(r, "motor.force")[0] == pytest.approx(M * G * R, rel=ENOUGH)
+    assert peaks(r, "motor.force")[2] == pytest.approx(M * G * R * np.cos(BEGIN), rel=ENOUGH)
+    assert peaks(r, "turn")[0] == pytest.approx(1.0, rel=ENOUGH)
+
+
+def test_a_load_that_is_back_at_every_row():
+    load = "type: applied_load, body: rod, direction: [0, 0, 1]"
+    push = f"push: {{{load}, torque: '3*(1 - cos(20*pi*t))'}}"
+    r = path(push, motion='position: "0*{}*t"')
+    still = M * G * R * np.cos(BEGIN)
+    assert peaks(r, "motor.force")[[0, 2]] == pytest.approx([still, still - 6], rel=ENOUGH)
