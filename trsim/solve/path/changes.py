@@ -214,16 +214,21 @@ class Looks:
 
     def passed_over(self, a: Place, b: Place) -> bool:
         """Whether what drives and loads ask for goes much further inside a step than at its ends,
-        as of one that is back at every row."""
+        as of one that is back at every row, or a drive goes back in it, so that what rubs turns."""
         eq = self.eq
         if not eq.mechanism.timed:
             return False
-        left = []
-        for k in range(WITHIN):
+        left, rates = [], []
+        for k in range(WITHIN + 1):
             t = a.t + k / WITHIN * (b.t - a.t)
             g = eq.left(t, eq.at_time(b.y, b.t, t), b.lam)
             off = np.abs(g[eq.n :]) / np.asarray(eq.work.row_unit)[: eq.m]
             left.append((float(off.max(initial=0.0)), eq.relative(g)))
+            rates.append(np.sign(eq.work.phi_t[: eq.m]))
+        signs = np.array(rates)
+        back = (signs[0] == signs[-1]) & (signs[0] != 0.0) & np.any(signs == -signs[0], axis=0)
+        if eq.rubs and back.any():
+            return True
         (way, force), *between = left
         return any(x > way + AWAY or f > force + ASKED for x, f in between)
 
