@@ -19,7 +19,7 @@ joints: {{hinge: {{type: revolute, bodies: [{bodies}], at: [0, 0], axis: [0, 0, 
 drives: {{motor: {{joint: hinge, {motion}}}}}
 sensors: {{turn: {{joint: hinge}}}}
 gravity: [0, -9.81, 0]
-solver: {{method: static_path, end: 0.5}}
+solver: {{method: static_path, end: {end}}}
 output: {{every: {every}}}
 forces: {{{forces}}}
 """
@@ -33,11 +33,11 @@ RUBS = (
 )
 
 
-def path(forces="", every=0.1, bodies="ground, rod", motion='velocity: "{}"', plane=""):
+def path(forces="", every=0.1, bodies="ground, rod", motion='velocity: "{}"', plane="", end=0.5):
     at = [float(R * np.cos(BEGIN)), float(R * np.sin(BEGIN))]
     side = 1 if bodies.startswith("ground") else -1
     text = ROD.format(
-        at=at, every=every, bodies=bodies, motion=motion.format(side * RATE), plane=plane,
+        at=at, every=every, bodies=bodies, motion=motion.format(side * RATE), plane=plane, end=end,
         forces=forces.format(at=at) if forces.startswith("spring") else forces,
     )  # fmt: skip
     return run(text)
@@ -95,3 +95,34 @@ def test_the_same_whatever_the_rows(rows):
         for k in range(first.place[name][1]):
             one, other = peaks(first, name, k)[[0, 2]], peaks(second, name, k)[[0, 2]]
             assert one == pytest.approx(other, abs=2 * ENOUGH * np.ptp(one) + 1e-9)
+
+
+@pytest.mark.parametrize("word", ["position", "velocity"])
+@pytest.mark.parametrize("every", [0.1, 0.5])
+def test_a_drive_that_is_back_at_every_row(word, every):
+    """It rests at every row, as if it had never moved, and goes 1 rad and back in between."""
+    motion = {"position": "{}*(1 - cos(20*pi*t))/6", "velocity": "{}*20*pi*sin(20*pi*t)/6"}[word]
+    r = path(every=every, motion=f'{word}: "{motion}"')
+    assert peaks(r, "motor.force")[0] == pytest.approx(M * G * R, rel=ENOUGH)
+    assert peaks(r, "motor.force")[2] == pytest.approx(M * G * R * np.cos(BEGIN), rel=ENOUGH)
+    assert peaks(r, "turn")[0] == pytest.approx(1.0, rel=ENOUGH)
+
+
+def test_a_load_that_is_back_at_every_row():
+    load = "type: applied_load, body: rod, direction: [0, 0, 1]"
+    push = f"push: {{{load}, torque: '3*(1 - cos(20*pi*t))'}}"
+    r = path(push, motion='position: "0*{}*t"')
+    still = M * G * R * np.cos(BEGIN)
+    assert peaks(r, "motor.force")[[0, 2]] == pytest.approx([still, still - 6], rel=ENOUGH)
+
+
+@pytest.mark.parametrize("word", ["position", "velocity"])
+def test_friction_turns_where_a_drive_goes_back_between_rows(word):
+    """At every row it goes on at its mean speed; between rows it goes back too."""
+    motion = {
+        "position": "{}*(t - cos(400*pi*t)/600)",
+        "velocity": "{}*(1 + 2*pi/3*sin(400*pi*t))",
+    }
+    r = path(RUBS, every=0.01, motion=f'{word}: "{motion[word]}"', end=0.03)
+    rub = 0.2 * M * G * 0.01
+    assert peaks(r, "rub.force")[[0, 2]] == pytest.approx([rub, -rub], rel=ENOUGH)

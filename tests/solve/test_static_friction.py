@@ -221,7 +221,8 @@ drives:
   y: {joint: across, position: "0.3*(1 - cos(2*pi*t))"}
 forces:
   touch: {type: surface_contact,
-          surface: {body: ground, shape: plane, at: [0, 0, 0], x_axis: [1, 0, 0], y_axis: [0, 0, 1]},
+          surface: {body: ground, shape: plane, at: [0, 0, 0], x_axis: [1, 0, 0],
+                    y_axis: [0, 0, 1]},
           ball: {body: foot, at: [0, 0, 0.1], radius: 0.1}, contact: rough}
 contact_laws:
   rough: {normal: impact, stiffness: 1e4, exponent: 1, damping: 0, ramp: 1 mm,

@@ -35,6 +35,11 @@ AT_REST = 1e-6  # of the mechanism's size in the time of the path: a slower slid
 FLAT = 1e-9  # of the largest eigenvalue: one that is rounding
 NEARLY = 0.01  # of an arch that a gap makes in a step: what its cubic may be wrong by
 FLATTEST = 1e-12  # of the mechanism's size: an arch that is rounding
+WITHIN = 8  # parts of a step in which drives and loads are asked where they are
+AWAY, ASKED = (
+    0.05,
+    0.1,
+)  # of the size, or rad, and of the largest force: how much further they may go
 CONTACT, PIECE, RIM, RUB, WATCH, SENSE = "contact", "piece", "rim", "rub", "watch", "sense"
 
 
@@ -212,6 +217,26 @@ class Looks:
             turns_through(x, y, h, -1.0 if inside else 1.0, self.work.size) for x, y, inside in ends
         )
 
+    def passed_over(self, a: Place, b: Place) -> bool:
+        """Whether what drives and loads ask for goes much further inside a step than at its ends,
+        as of one that is back at every row, or a drive goes back in it, so that what rubs turns."""
+        eq = self.eq
+        if not eq.mechanism.timed:
+            return False
+        left, rates = [], []
+        for k in range(WITHIN + 1):
+            t = a.t + k / WITHIN * (b.t - a.t)
+            g = eq.left(t, eq.at_time(b.y, b.t, t), b.lam)
+            off = np.abs(g[eq.n :]) / np.asarray(eq.work.row_unit)[: eq.m]
+            left.append((float(off.max(initial=0.0)), eq.relative(g)))
+            rates.append(np.sign(eq.work.phi_t[: eq.m]))
+        signs = np.array(rates)
+        back = (signs[0] == signs[-1]) & (signs[0] != 0.0) & np.any(signs == -signs[0], axis=0)
+        if eq.rubs and back.any():
+            return True
+        (way, force), *between = left
+        return any(x > way + AWAY or f > force + ASKED for x, f in between)
+
     def whose(self, place: int) -> int:
         """The instance that has the function of a piece, held at this place; -1 of none."""
         w, mechanism = self.work, self.eq.mechanism
@@ -267,13 +292,14 @@ def bent_tables(mechanism: Any) -> set[int]:
 
 def rimmed_tables(w: Any, mechanism: Any) -> list[int]:
     """Offsets of smooth tables of sensors that hold their end values: they are bent there."""
-    return [
+    smooth = [
         one.offset
         for one in mechanism.functions
-        if one.spec.kind == "table" and one.spec.interpolation != "linear"
-        and one.spec.ends == "hold" and w.tab[one.offset] == TABLE
-        and w.tab[one.offset + VARIABLE] >= 0
-    ]  # fmt: skip
+        if one.spec.kind == "table"
+        and one.spec.interpolation != "linear"
+        and one.spec.ends == "hold"
+    ]
+    return [o for o in smooth if w.tab[o] == TABLE and w.tab[o + VARIABLE] >= 0]
 
 
 def watched_places(w: Any, bent: set[int]) -> NDArray[np.int64]:

@@ -92,7 +92,7 @@ class Path:
         while place.t < self.end * (1.0 - SAME):
             to = self.until(place.t, h)
             trial = self.reached(place, to)
-            if trial is None:
+            if trial is None or self.looks.passed_over(place, trial):
                 self.rejected += 1
                 h = 0.5 * (to - place.t)
                 if h < SHORTEST * self.end:
