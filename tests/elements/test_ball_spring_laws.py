@@ -216,4 +216,4 @@ output: {{every: 0.01}}
                   max_step=5e-4).y  # fmt: skip
     place = Rotation.from_quat(y[:4].T).apply(s) + np.array([100, 200, 300])
     assert r["rod.position"] == pytest.approx(place, abs=1e-5)
-    assert r.outcome.statistics["steps"] < 300
+    assert r.outcome.statistics["steps"] < 200
