@@ -8,7 +8,7 @@ from scipy.special import comb
 
 from tests.runs import short_run
 from trsim.assemble.equations import poses
-from trsim.assemble.travel import ANGLE, DISTANCE, RATE_OF, STROKE
+from trsim.assemble.travel import ANGLE, DISTANCE, RATE_OF, STROKE, SWING
 from trsim.elements.scene import scene
 from trsim.kernels import plain
 from trsim.solve.march.record import fresh_buffers
@@ -33,6 +33,17 @@ forces:
 solver: {{end: 1 ms}}
 output: {{every: 1 ms}}
 """
+BALL = """
+planar: {planar}
+bodies:
+  left: {{mass: 2, inertia: [0.02, 0.03, 0.04], at: [0.1, -0.2, 0], angle: 0.7}}
+  right: {{mass: 3, inertia: [0.05, 0.04, 0.03], at: [0.5, 0.2, 0], angle: -0.4}}
+joints: {{free: {{type: spherical, bodies: [left, right], at: [0.3, 0.1, 0]}}}}
+forces: {{mount: {{type: ball_spring, joint: free, damper: "max(rate - 9, 0)"}}}}
+solver: {{end: 1 ms}}
+output: {{every: 1 ms}}
+"""
+KINDS = {TEXT: {ANGLE, STROKE, DISTANCE}, BALL: {SWING}}
 DEGREE = 7
 H = 0.3  # s
 
@@ -78,10 +89,11 @@ class Motion:
         return net
 
 
+@pytest.mark.parametrize("text", KINDS, ids=["hinge", "ball"])
 @pytest.mark.parametrize("planar", ["true", "false"])
 @pytest.mark.parametrize("seed", range(6))
-def test_nothing_goes_beyond_its_bounds(planar, seed):
-    r = short_run(TEXT.format(planar=planar), fails=None)
+def test_nothing_goes_beyond_its_bounds(text, planar, seed):
+    r = short_run(text.format(planar=planar), fails=None)
     model, at = r.mechanism.model, Motion(r, np.random.default_rng(seed))
     at.record.y[:] = at.state(0.0)
     at.record.degree = DEGREE
@@ -112,4 +124,4 @@ def test_nothing_goes_beyond_its_bounds(planar, seed):
             assert twice <= M * slack + 1e-4 * L / H
             if high - low < 0.1 and kind - RATE_OF != DISTANCE and np.inf > M:
                 assert 1e3 * once + 1e3 > L  # a bound that says something
-    assert found == {ANGLE, STROKE, DISTANCE}
+    assert found == KINDS[text]

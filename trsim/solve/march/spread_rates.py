@@ -5,7 +5,7 @@ velocity of a frame and its first and second rate, and u = R_i^T d what frame i 
 
     angle      |g''| <= alpha_i + alpha_j + omega_i W,        W = omega_i + omega_j
                |g'''| <= beta_i + beta_j + 2 omega_i (alpha_i + alpha_j) + (alpha_i + omega_i^2) W
-    swing      that of an angle for |g''|, of the rate that is |omega_j - omega_i|   ball_spring.py
+    swing      w = |omega_j - omega_i|: |w'| <= as of an angle, |w''| <= as there + |w'|^2 / w
     stroke     |g''| <= |u''|                                 |g'''| <= |u'''|
     distance   |g''| <= |u''| + |u'|^2 / |u|
                |g'''| <= |u'''| + 6 |u'| |u''| / |u| + 3 |u'|^3 / |u|^2
@@ -22,7 +22,15 @@ from math import inf, sqrt
 
 from trsim.assemble.travel import ANGLE, DISTANCE, RATE_OF, SWING, UNKNOWN
 from trsim.elements.contract import Pair
-from trsim.elements.frames import cross, dot, separation, spin, two_points, velocity
+from trsim.elements.frames import (
+    cross,
+    dot,
+    relative_spin,
+    separation,
+    spin,
+    two_points,
+    velocity,
+)
 from trsim.kernels.lazy import internal
 from trsim.solve.march.spread import cut, spread_at_stages
 from trsim.solve.methods.displacements import first_of
@@ -126,12 +134,10 @@ def spread_of_rate(s, r, b, what, part):
     w_i, a_i, b_i = turned(s, r, b, i, 0, length)
     w_j, a_j, b_j = turned(s, r, b, j, first_j, length)
     bent_i = a_i + w_i * w_i
-    if kind == SWING:  # of the size of a vector, which turns round at once where it is zero
-        turn = w_i + w_j
-        return turn, a_i + a_j + w_i * turn, inf
-    if kind == ANGLE:
+    if kind in (ANGLE, SWING):
         turn, bend = w_i + w_j, a_i + a_j
-        return turn, bend + w_i * turn, b_i + b_j + 2.0 * w_i * bend + bent_i * turn
+        once, twice = bend + w_i * turn, b_i + b_j + 2.0 * w_i * bend + bent_i * turn
+        return turn, once, twice if kind == ANGLE else of_size(s, i, j, once, twice, length)
     round_i = b_i + 3.0 * a_i * w_i + w_i**3
     round_j = b_j + 3.0 * a_j * w_j + w_j**3
     bend, jerk = moved_apart(s, b, n, (i, j, first_j), length)
@@ -157,6 +163,16 @@ def spread_of_rate(s, r, b, what, part):
         return fastest, inf, inf
     w = fastest / least
     return fastest, once + w * fastest, twice + 6.0 * w * once + 3.0 * w * w * fastest
+
+
+@internal
+def of_size(s, i, j, once, twice, length):
+    """A bound of |w''| of the size w of omega_j - omega_i, from those of its rates: it turns round
+    at once where it is zero."""
+    omega = relative_spin(s.V, i, j)
+    size = sqrt(dot(omega, omega))
+    least = size - once * length
+    return twice + once * once / least if least > 0.1 * size else inf
 
 
 @internal
