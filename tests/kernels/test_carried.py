@@ -5,6 +5,7 @@ import os
 import platform
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import h5py
@@ -253,6 +254,19 @@ def test_every_bit_of_what_is_packed_counts(place):
     for k in range(begin, len(content), 7):
         path.write_bytes(content[:k] + bytes([content[k] ^ 16]) + content[k + 1 :])
         assert carried.code(total, TOTAL) in (None, whole)
+
+
+def test_code_that_unpacks_and_is_not_what_was_made_is_not_used(place):
+    [path] = carry_some(place, Compiled(total, TOTAL))
+    told, begin = carried.index(path)
+    whole = zlib.decompress(path.read_bytes()[begin:])
+    assert carried.code(total, TOTAL)
+    for k in range(70, len(whole), 101):  # behind its digest
+        packed = zlib.compress(whole[:k] + bytes([whole[k] ^ 1]) + whole[k + 1 :])
+        told["places"][0][1] = len(packed)
+        carried.write(path, told, packed)
+        carried._chosen.cache_clear()
+        assert carried.code(total, TOTAL) is None
 
 
 def test_code_of_another_function_is_not_taken_for_it(place):
