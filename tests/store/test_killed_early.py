@@ -15,7 +15,7 @@ import pytest
 
 from tests import small
 from tests.sizes import size
-from tests.sweep.test_go import contents
+from tests.sweeps.test_go import contents
 from trsim import store, sweep
 from trsim.assemble.assemble import assemble
 from trsim.errors import FileError, UsageError
@@ -26,9 +26,9 @@ from trsim.store.lock import refuse_if_written
 from trsim.store.plain import SIZE
 from trsim.store.recover import recover
 from trsim.store.target import CHECKPOINT, LOCK, PART
-from trsim.sweep import job
-from trsim.sweep.go import go
-from trsim.sweep.plan import plan
+from trsim.sweeps import job
+from trsim.sweeps.go import go
+from trsim.sweeps.plan import plan
 
 ENDING = {".part": PART, ".part.new": PART, ".lock": LOCK, ".checkpoint": CHECKPOINT,
           ".checkpoint.new": CHECKPOINT}  # fmt: skip

@@ -104,9 +104,9 @@ def command(
     Writes FOLDER/cases/NAME.h5, a result file for each case, and FOLDER/index.csv, one row for
     each.  The same command again runs what is missing or changed, and nothing else.
     """
-    from trsim.sweep.go import Shard, engine, needs
-    from trsim.sweep.plan import plan
-    from trsim.sweep.slot import Limits
+    from trsim.sweeps.go import Shard, engine, needs
+    from trsim.sweeps.plan import plan
+    from trsim.sweeps.slot import Limits
 
     wanted, identity = Wanted(**options), engine()
     with Doing(answer, scenario) as doing:
@@ -130,7 +130,7 @@ def command(
 
 def checked(planned: Any) -> None:
     """Refuse a sweep of which a case is no scenario, with all that is wrong, each told once."""
-    from trsim.sweep.plan import faults
+    from trsim.sweeps.plan import faults
 
     found: dict[str, TrsimError] = {}
     for case, error in faults(planned):
@@ -150,7 +150,7 @@ def checked(planned: Any) -> None:
 
 def reasons(answer: Answer, planned: Any, folder: Path, told: Any, each: bool) -> None:
     """Say what would be run, and why."""
-    from trsim.sweep.needed import explained
+    from trsim.sweeps.needed import explained
 
     wanted = [(case, need) for case, need in told if need.why]
     answer.data["needed"] = [
@@ -190,10 +190,10 @@ def runner(
 
     def run(tasks: Any) -> Any:
         if address:
-            from trsim.sweep.dask import run as by_dask
+            from trsim.sweeps.dask import run as by_dask
 
             return by_dask(tasks, address, limits)
-        from trsim.sweep import local
+        from trsim.sweeps import local
 
         return local.run(tasks, jobs or processors(), limits, warming(answer, planned))
 
@@ -204,9 +204,9 @@ def ran(
     answer: Answer, planned: Any, folder: Path, identity: str, part: Any, run: Callable[[Any], Any]
 ) -> None:
     """Run what is needed, and tell how it went."""
-    from trsim.sweep.folder import strays
-    from trsim.sweep.go import differing, go
-    from trsim.sweep.ledger import counts, in_a_line
+    from trsim.sweeps.folder import strays
+    from trsim.sweeps.go import differing, go
+    from trsim.sweeps.ledger import counts, in_a_line
 
     if part.n > 1 and (other := differing(planned, folder)):
         text = f"{other} cases of the plan that is there are not in this one: give all shards"
@@ -230,7 +230,7 @@ def ran(
         going.close()
         if show is not None:
             show.close()
-    from trsim.sweep.study import study
+    from trsim.sweeps.study import study
 
     found = study(folder)
     mine = found.cases[part.i - 1 :: part.n]

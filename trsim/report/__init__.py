@@ -50,7 +50,7 @@ def analysed(paths: Sequence[str | PathLike], folder: str | PathLike, asked: "As
     with made(folder) as folder:
         if Path(paths[0]).is_dir():
             from trsim.report import studies
-            from trsim.sweep.study import study
+            from trsim.sweeps.study import study
 
             return studies.draw(study(Path(paths[0])), asked, words(asked.table), folder)
         return of_runs(paths, folder, asked)

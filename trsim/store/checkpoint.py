@@ -38,7 +38,7 @@ MAGIC = "trsim checkpoint 1"
 ENDING = ".checkpoint"
 ANEW = "Without --resume the run starts anew."
 SHOWN = 5  # differences in a message
-OUTSIDE = {"cli", "report", "analyse", "studies", "sweep"}  # packages that have no part in a run
+OUTSIDE = {"cli", "report", "analyse", "studies", "sweeps", "api"}  # packages that have no part in a run
 DAMAGED = (ValueError, LookupError, TypeError, AttributeError, EOFError, OSError, MemoryError,
            RuntimeError, NotImplementedError, zipfile.BadZipFile, zlib.error)  # fmt: skip
 Arrays = dict[str, NDArray[Any]]

@@ -12,8 +12,8 @@ from itertools import islice
 from typing import Any
 
 from trsim.errors import FileError, UsageError
-from trsim.sweep.slot import Limits, Slot
-from trsim.sweep.worker import JOB
+from trsim.sweeps.slot import Limits, Slot
+from trsim.sweeps.worker import JOB
 
 CONNECTING = 10.0  # s
 LOOK = 1.0  # s between two looks at what was lost

@@ -19,9 +19,9 @@ from trsim.scenario.memory import Memory
 from trsim.scenario.merge import keys_of, put, setting
 from trsim.scenario.scenario import Scenario
 from trsim.scenario.text import Tree
-from trsim.sweep.digest import Digests
-from trsim.sweep.points import Point, points
-from trsim.sweep.values import mixed, units, written
+from trsim.sweeps.digest import Digests
+from trsim.sweeps.points import Point, points
+from trsim.sweeps.values import mixed, units, written
 
 CASE = "case"  # the key of the named cases
 LONGEST = 80  # letters of a name

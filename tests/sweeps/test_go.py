@@ -20,11 +20,11 @@ from trsim.errors import FileError, UsageError
 from trsim.store.checkpoint import sources
 from trsim.store.lock import writing
 from trsim.store.read import verify
-from trsim.sweep import job, local
-from trsim.sweep.go import WHOLE, Shard, differing, engine, go, needs
-from trsim.sweep.ledger import entries
-from trsim.sweep.plan import plan
-from trsim.sweep.study import study
+from trsim.sweeps import job, local
+from trsim.sweeps.go import WHOLE, Shard, differing, engine, go, needs
+from trsim.sweeps.ledger import entries
+from trsim.sweeps.plan import plan
+from trsim.sweeps.study import study
 
 ROOT = Path(__file__).parents[2]
 B = "joints.B.clearance"

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from tests import small
-from tests.sweep.test_go import FINE, contents, made
-from tests.sweep.test_local import JOB, ended, tasks
+from tests.sweeps.test_go import FINE, contents, made
+from tests.sweeps.test_local import JOB, ended, tasks
 from trsim.errors import FileError
-from trsim.sweep import dask
-from trsim.sweep.go import go
-from trsim.sweep.plan import plan
-from trsim.sweep.slot import Limits
+from trsim.sweeps import dask
+from trsim.sweeps.go import go
+from trsim.sweeps.plan import plan
+from trsim.sweeps.slot import Limits
 
 distributed = pytest.importorskip("distributed")
 ROOT = Path(__file__).parents[2]

@@ -7,7 +7,7 @@ import pytest
 
 from tests import small
 from trsim.errors import ScenarioError, TrsimError, UsageError
-from trsim.sweep.plan import faults, plan
+from trsim.sweeps.plan import faults, plan
 
 
 @pytest.fixture

@@ -11,17 +11,17 @@ from trsim.store.checkpoint import sources
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.own import remove
 from trsim.store.target import LOCK, file_errors, make
-from trsim.sweep.folder import (
+from trsim.sweeps.folder import (
     check_usable,
     read_plan,
     remove_unfinished,
     write_index,
     write_plan,
 )
-from trsim.sweep.job import task
-from trsim.sweep.ledger import Entry, Ledger, entries, stamp
-from trsim.sweep.needed import Need, need
-from trsim.sweep.plan import Case, Plan, named_file
+from trsim.sweeps.job import task
+from trsim.sweeps.ledger import Entry, Ledger, entries, stamp
+from trsim.sweeps.needed import Need, need
+from trsim.sweeps.plan import Case, Plan, named_file
 from trsim.version import __version__
 
 WRITTEN, RARELY = 1.0, 20.0  # s between two writings of the index; of the time one takes

@@ -5,8 +5,8 @@ import threading
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from trsim.sweep.slot import ANY, Limits, Slot
-from trsim.sweep.worker import JOB
+from trsim.sweeps.slot import ANY, Limits, Slot
+from trsim.sweeps.worker import JOB
 
 LOOK = 0.2  # s between two looks for a signal
 Task = dict[str, Any]

@@ -12,7 +12,7 @@ import threading
 from typing import Any, NamedTuple
 
 from trsim import child
-from trsim.sweep.worker import JOB, MEMORY
+from trsim.sweeps.worker import JOB, MEMORY
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 TAIL = 400  # characters of what a dead process said
@@ -91,7 +91,7 @@ class Slot:
         """The process, made unless it is there."""
         if self.process is None or self.process.poll() is not None:
             self.close()
-            command = child.command("trsim.sweep.worker", str(self.limits.memory), self.job)
+            command = child.command("trsim.sweeps.worker", str(self.limits.memory), self.job)
             environment = {**os.environ, **dict.fromkeys(ONE_THREAD, "1")}
             self.said = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
             self.process = subprocess.Popen(  # noqa: S603

@@ -11,7 +11,7 @@ from typing import Any
 from trsim.errors import FileError, SolverError, TrsimError
 from trsim.scenario.methods import METHODS
 from trsim.solve.blocks import Blocks
-from trsim.sweep.ledger import DIGEST, REFUSED
+from trsim.sweeps.ledger import DIGEST, REFUSED
 
 CHECKPOINT = 60.0  # s of wall time between two
 PATIENCE = 10.0  # s

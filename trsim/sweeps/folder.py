@@ -13,9 +13,9 @@ from typing import Any
 from trsim.errors import FileError, UsageError
 from trsim.store.own import remove
 from trsim.store.target import Kind, fresh, headed, replaceable
-from trsim.sweep.ledger import WORD, Entry, in_a_line
-from trsim.sweep.plan import CASE, Plan
-from trsim.sweep.values import value
+from trsim.sweeps.ledger import WORD, Entry, in_a_line
+from trsim.sweeps.plan import CASE, Plan
+from trsim.sweeps.values import value
 
 FORMAT, VERSION = "trsim sweep", 1
 NUMBERED = re.compile(r"\.\d+(-\d+)?")

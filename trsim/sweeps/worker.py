@@ -15,7 +15,7 @@ from typing import Any
 
 from trsim.system import end_with_parent, limit_memory
 
-JOB = "trsim.sweep.job:run"
+JOB = "trsim.sweeps.job:run"
 MEMORY = "the memory allowed for a case may have been used up"
 
 

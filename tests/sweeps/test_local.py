@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from tests.sizes import size
-from trsim.sweep import local
-from trsim.sweep.slot import Limits
+from trsim.sweeps import local
+from trsim.sweeps.slot import Limits
 
-JOB = "tests.sweep.jobs:run"
+JOB = "tests.sweeps.jobs:run"
 ROOT = Path(__file__).parents[2]
 
 
@@ -98,7 +98,7 @@ def test_cold_workers_compile_once(tmp_path, monkeypatch):
     (tmp_path / "marks").mkdir()
     n = size(3, 8)
     found = ended(
-        local.run(tasks(tmp_path / "marks", *["x"] * n), n, job="tests.sweep.jobs:compiling")
+        local.run(tasks(tmp_path / "marks", *["x"] * n), n, job="tests.sweeps.jobs:compiling")
     )
     assert [result["status"] for result in found.values()] == ["done"] * n
     made = sorted(path.name.rsplit(".", 1)[0] for path in (tmp_path / "marks").iterdir())
@@ -134,8 +134,8 @@ def test_broken_off_it_leaves_no_process(tmp_path):
 
 PARENT = """
 import sys
-from trsim.sweep import local
-from tests.sweep.test_local import JOB, tasks
+from trsim.sweeps import local
+from tests.sweeps.test_local import JOB, tasks
 for one in local.run(tasks(sys.argv[1], *["sleep"] * 4), 2, job=JOB):
     pass
 """

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from trsim.errors import FileError
 from trsim.store.read import Run, read
-from trsim.sweep.folder import read_plan
-from trsim.sweep.ledger import FAILED, Entry, entries, stamp
-from trsim.sweep.needed import CHANGED, adopted, stands
-from trsim.sweep.plan import named_file
+from trsim.sweeps.folder import read_plan
+from trsim.sweeps.ledger import FAILED, Entry, entries, stamp
+from trsim.sweeps.needed import CHANGED, adopted, stands
+from trsim.sweeps.plan import named_file
 
 MISSING = "missing"
 

@@ -8,9 +8,9 @@ import h5py
 
 from trsim.errors import some
 from trsim.store.checkpoint import differing, leaves
-from trsim.sweep.job import CONTACT, STATISTICS
-from trsim.sweep.ledger import AGAIN, DIGEST, REFUSED, Entry, stamp
-from trsim.sweep.plan import Case, Plan, named_file
+from trsim.sweeps.job import CONTACT, STATISTICS
+from trsim.sweeps.ledger import AGAIN, DIGEST, REFUSED, Entry, stamp
+from trsim.sweeps.plan import Case, Plan, named_file
 
 DAMAGED = (OSError, LookupError, RuntimeError, ValueError, TypeError, AttributeError)
 CHANGED = "its file was changed"
