@@ -50,7 +50,7 @@ GOOD = {
 }
 SEAMS = {  # what a command calls to do its work
     "run": "trsim.cli.run.one",
-    "sweep": "trsim.sweeps.go.go",
+    "sweep": "trsim.api.sweep.go",
     "status": "trsim.sweeps.study.study",
     "check": "trsim.cli.check.one",
     "statics": "trsim.cli.statics.one",

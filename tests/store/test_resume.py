@@ -179,12 +179,13 @@ def test_a_disk_without_room_to_go_on(tmp_path, monkeypatch, scenario, mechanism
     monkeypatch.setattr(solver, "VISIT", 15)
     cut(path, scenario, mechanism, 2, closed=True)
     kept = checkpoint.load(checkpoint.beside(path))
-    left = r"run\.h5\.part holds the run until t = \S+ s; `trsim recover .*` goes on with the run"
+    left = r"run\.h5\.part holds the run until t = \S+ s; `trsim recover .*` makes it a result "
+    left += "file, `trsim run x.yaml --resume` goes on with the run"
     for module, name in ((hdf5, "check_room"), (checkpoint, "synced")):
         running = solver.simulate(scenario, mechanism, kept.state)
         with monkeypatch.context() as patch, pytest.raises(FileError) as error:
             patch.setattr(module, name, full)
-            around = hdf5.Around("trsim run x.yaml", ALWAYS, kept)
+            around = hdf5.Around("", ALWAYS, kept, again="trsim run x.yaml --resume")
             write(path, scenario, mechanism, running, around)
         assert "No space left on device" in error.value.what and error.value.file
         assert re.search(left, error.value.hint), error.value.hint

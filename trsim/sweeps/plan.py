@@ -6,7 +6,7 @@ Cases share the pieces of data that they do not change, so a piece is read, chec
 import hashlib
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -91,13 +91,17 @@ class _Named(NamedTuple):
         return of_tree(self.with_values(case.values), self.text)
 
 
-def plan(path: str, sets: Iterable[str] = (), engine: str = "") -> Plan:
+def plan(
+    path: str, sets: Iterable[str] = (), engine: str = "",
+    read: Callable[[str], tuple[Tree, str]] = expand,
+) -> Plan:  # fmt: skip
     """The plan of a scenario file; sets: numbers, or axes where the value is one.
 
-    engine: what identifies the program that makes the runs.
+    engine: what identifies the program that makes the runs; read: gives the tree of `path`, and its
+    text.
     """
     fixed, axes = _sorted(sets)
-    tree, text = expand(path)
+    tree, text = read(path)
     named: dict[str, _Named] = {}
     for name, inner in named_cases(tree).items():
         for keys, new, at, key_place in fixed:

@@ -1,18 +1,20 @@
-"""`trsim run` of a scenario with `sizing`: the load is found first, by passes that are told."""
+"""A run of a scenario with `sizing`: the load is found first, by passes that are told."""
 
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from trsim.cli.frame import Answer
-from trsim.cli.running import Wanted, look, placed
+from trsim.api.compiling import compiling
+from trsim.api.hearing import Listener
+from trsim.api.running import Wanted, placed
+from trsim.api.stop import look
 from trsim.errors import FileError, TrsimError, UsageError
 
 Closing = Callable[[Any], dict[str, Any]]
 
 
 def found(
-    answer: Answer, source: str, target: Path, scenario: Any, wanted: Wanted
+    hears: Listener, source: str, target: Path, scenario: Any, wanted: Wanted
 ) -> tuple[Any, list[float], Closing]:
     """The scenario with the load as found, what each pass left, and what stores that in the file.
 
@@ -21,15 +23,13 @@ def found(
     if wanted.certify:
         hint = "Certify the run of its result file: `trsim run NAME.h5 --certify`."
         raise UsageError("a run that sizes a load is many runs", hint)
-    from trsim.cli.progress import compiling
-
-    compiling(answer, scenario.solver.method)
+    compiling(hears, scenario.solver.method)
     from trsim.solve.sizing import sized
 
     def passed(count: int, left: float) -> None:
         look()
         of = f"of the force of '{scenario.sizing.drive}'"
-        answer.say(f"{source}: pass {count}: {left:.3g} {of} is left")
+        hears.say(f"{source}: pass {count}: {left:.3g} {of} is left")
 
     try:
         result = sized(scenario, passed)
@@ -37,7 +37,7 @@ def found(
         raise placed(error, scenario) from None
     path = target.with_name(f"{target.name.removesuffix('.h5')}.sizing.csv")
     write(path, scenario, result)
-    answer.say(f"{source}: the load is in {path}")
+    hears.say(f"{source}: the load is in {path}")
 
     def closing(file: Any) -> dict[str, Any]:
         file["provenance"].attrs["sizing"] = result.in_words
