@@ -80,6 +80,10 @@ def one(answer: Answer, source: str, target: Path, how: Any) -> dict[str, Any]:
 
     summary = made(answer, Work(source, target, how))
     answer.say(line(summary))
+    if not answer.quiet:
+        from trsim.cli.solved import solved
+
+        answer.say(f"{source}: {solved(summary)}")
     remark(answer, source, summary)
     if "certificate" in summary:
         from trsim.cli.certify import print_certificate
