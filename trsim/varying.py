@@ -73,7 +73,7 @@ class Column:
 
     def number(self, item: Any, parameters: dict) -> float:
         """The SI value of an entry.  Raises ScenarioError, also for a unit that does not fit."""
-        found = written(item, parameters) if isinstance(item, str) else None
+        found = written(item, parameters, self.allowed) if isinstance(item, str) else None
         if found and found[1]:
             if self.whole:
                 what = f"{described(item)} has a unit, and so has its column: {self.unit}"
@@ -123,7 +123,7 @@ class _FunctionUnit(Unit):
     def _read(self, value: Any, parameters: dict, names: dict) -> FunctionSpec:
         if isinstance(value, dict):
             return self._table(value, parameters, names)
-        if isinstance(value, str) and quantity(value, {"t", *parameters}) is None:
+        if isinstance(value, str) and quantity(value, {"t", *parameters}, self.units) is None:
             node = expressions.substitute(expressions.parse(value), parameters)
             if node[0] != "number":
                 return FunctionSpec("expression", node=expressions.renamed(node, names))
