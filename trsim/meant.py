@@ -14,12 +14,37 @@ from trsim.errors import edits
 
 # what others write -> ours, singular and in small letters
 NAMES = {
-    **{"second": "s", "sec": "s", "minute": "min", "hour": "h", "hr": "h"},
-    **{"metre": "m", "meter": "m", "inch": "in", "inche": "in", "foot": "ft", "feet": "ft"},
-    **{"gram": "g", "gramme": "g", "kilo": "kg", "tonne": "t", "ton": "t", "lbm": "lb"},
-    **{"newton": "N", "pascal": "Pa", "joule": "J", "watt": "W", "hertz": "Hz", "knot": "kt"},
-    **{"degree": "deg", "radian": "rad", "revolution": "rev", "cycle": "rev"},
-    **{"percent": "%", "kph": "km/h", "kmh": "km/h", "micron": "um"},
+    "second": "s",
+    "sec": "s",
+    "minute": "min",
+    "hour": "h",
+    "hr": "h",
+    "metre": "m",
+    "meter": "m",
+    "inch": "in",
+    "inche": "in",
+    "foot": "ft",
+    "feet": "ft",
+    "gram": "g",
+    "gramme": "g",
+    "kilo": "kg",
+    "tonne": "t",
+    "ton": "t",
+    "lbm": "lb",
+    "newton": "N",
+    "pascal": "Pa",
+    "joule": "J",
+    "watt": "W",
+    "hertz": "Hz",
+    "knot": "kt",
+    "degree": "deg",
+    "radian": "rad",
+    "revolution": "rev",
+    "cycle": "rev",
+    "percent": "%",
+    "kph": "km/h",
+    "kmh": "km/h",
+    "micron": "um",
 }
 FORCES = {"lb": "lbf", "pound": "lbf"}  # where these are no masses
 MASSES = {"pound": "lb"}
@@ -29,7 +54,7 @@ SURE = 0.5  # of what speaks against a reading: capitals for small letters
 FEWEST = 3  # letters of a word that is guessed by its nearest
 
 _PIECE = re.compile(
-    r"\s*(?:(?P<over>/|\bper\b)|(?P<one>1)\s*(?=/)|(?P<bracket>[()])|(?P<times>[*.×_-])"
+    r"\s*(?:(?P<over>/|\bper\b)|(?P<one>1)\s*(?=/)|(?P<bracket>[()])|(?P<times>[*.\u00d7_-])"
     r"|(?P<word>[A-Za-zµ°%]+)(?P<power>\s*(?:\^|\*\*)\s*\(?-?NUMBER\)?|-?NUMBER)?)".replace(
         "NUMBER", r"[0-9]+(?:\.[0-9]+)?"
     )
@@ -93,7 +118,8 @@ def _factors(text: str) -> list[Factor]:
 
 def _written(factors: list[Factor], reading: list[Words]) -> str:
     """Products and powers as we write them."""
-    above, below = [], []
+    above: list[str] = []
+    below: list[str] = []
     for factor, parts in zip(factors, reading, strict=True):
         power = factor.power.removeprefix("-")
         side = above if (factor.sign > 0) != factor.power.startswith("-") else below

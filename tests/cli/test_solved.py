@@ -42,8 +42,8 @@ def test_why_it_changed(told):
     """A block of 2 kg on 20 000 N s/m: m v' = -c v has the rate c/m = 1e4 1/s."""
     line, result = told(DAMPED.format(force="200*t", end=1, more=""))
     found = re.fullmatch(
-        r"auto: dop853, from t = (\S+) s on radau, as the motion is stiff there \(rates up to (\S+) "
-        r"1/s\), so that stability, not accuracy, would set the steps of dop853",
+        r"auto: dop853, from t = (\S+) s on radau, as the motion is stiff there "
+        r"\(rates up to (\S+) 1/s\), so that stability, not accuracy, would set the steps of dop853",
         line,
     )
     assert found, line
