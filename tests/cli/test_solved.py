@@ -43,7 +43,8 @@ def test_why_it_changed(told):
     line, result = told(DAMPED.format(force="200*t", end=1, more=""))
     found = re.fullmatch(
         r"auto: dop853, from t = (\S+) s on radau, as the motion is stiff there "
-        r"\(rates up to (\S+) 1/s\), so that stability, not accuracy, would set the steps of dop853",
+        r"\(rates up to (\S+) 1/s\), so that stability, not accuracy, "
+        r"would set the steps of dop853",
         line,
     )
     assert found, line
