@@ -54,6 +54,6 @@ def write(path: Path, scenario: Any, result: Any) -> None:
     lines += [f"{x!r}, {F!r}" for x, F in zip(result.x.tolist(), result.load.tolist(), strict=True)]
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
     except OSError as error:
         raise FileError(f"{path}: {error.strerror}", "", file=str(path)) from None

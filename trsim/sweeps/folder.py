@@ -85,7 +85,8 @@ def write_plan(folder: Path, plan: Plan, engine: str) -> None:
         "samples": plan.samples, "seed": plan.seed, "cases": cases,
     }  # fmt: skip
     with fresh(folder / "plan.json", PLAN) as unfinished:
-        unfinished.write_text(json.dumps(told, ensure_ascii=False), encoding="utf-8")
+        text = json.dumps(told, ensure_ascii=False)
+        unfinished.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _values(case: str, values: dict[str, Any]) -> dict[str, Any]:

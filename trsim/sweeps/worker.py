@@ -23,7 +23,7 @@ def main(memory: int, job: str) -> None:
     """Work until there are no more tasks."""
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    replies = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
     os.dup2(2, 1)  # whatever else is printed is no reply
     module, _, name = job.partition(":")
     loaded = import_module(module)
