@@ -169,7 +169,7 @@ class _FunctionUnit(Unit):
         return [Column(*pair) for pair in zip(units, allowed, strict=True)]
 
     def _columns(self, rows: Any, columns: list[Column], parameters: dict, headed: bool) -> Any:
-        """x, y and their units as written; headed: whether a row of titles stood before the rows."""
+        """x, y and their units as written; headed: whether there was a row of titles as well."""
         if not isinstance(rows, list | tuple) or len(rows) < 2:
             raise ScenarioError(f"must be two or more rows [x, y], got {described(rows)}")
         last = -math.inf

@@ -16,7 +16,7 @@ import pytest
 from tests import small
 from tests.sizes import size
 from tests.sweeps.test_go import contents
-from trsim import store, sweep
+from trsim import store, sweeps
 from trsim.assemble.assemble import assemble
 from trsim.errors import FileError, UsageError
 from trsim.scenario.load import loads
@@ -35,7 +35,7 @@ ENDING = {".part": PART, ".part.new": PART, ".lock": LOCK, ".checkpoint": CHECKP
 SETS = ("joints.B.clearance=[0.4 mm, 0.5 mm]", "solver.end=0.5 ms")
 
 
-WRITERS = tuple(f"{Path(module.__file__).parent}/" for module in (store, sweep, h5py))
+WRITERS = tuple(f"{Path(module.__file__).parent}/" for module in (store, sweeps, h5py))
 ENOUGH = 4096  # bytes: what is longer is a file with rows
 
 

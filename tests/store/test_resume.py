@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 from tests import small
+from tests.elsewhere import PATH, needs
 from tests.store import outside
 from trsim.assemble.assemble import assemble
 from trsim.assemble.instances import Column
@@ -199,7 +200,7 @@ def test_a_disk_without_room_to_go_on(tmp_path, monkeypatch, scenario, mechanism
 def trsim(folder, *arguments):
     """`trsim run` of the long scenario; code, document, stderr."""
     command = [sys.executable, "-m", "trsim", "run", "crank.yaml", "--json", *arguments]
-    environment = {"PYTHONPATH": str(outside.ROOT)}
+    environment = {"PYTHONPATH": PATH}
     done = subprocess.run(  # noqa: S603
         command, cwd=folder, env={**os.environ, **environment}, capture_output=True,
         text=True, timeout=120,
@@ -243,6 +244,7 @@ def test_signal_and_resume(number, code, tmp_path, unbroken):
     assert {p.name for p in (tmp_path / "runs").iterdir()} == {"crank.h5"}
 
 
+@needs("resource")
 def test_full_disk_and_resume(tmp_path, unbroken):
     process = outside.begun(tmp_path, *END, "--checkpoint", str(ALWAYS), limit=8_000_000)
     _, err = process.communicate(timeout=60)

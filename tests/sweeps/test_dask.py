@@ -4,11 +4,11 @@ import os
 import signal
 import threading
 import time
-from pathlib import Path
 
 import pytest
 
 from tests import small
+from tests.elsewhere import PATH
 from tests.sweeps.test_go import FINE, contents, made
 from tests.sweeps.test_local import JOB, ended, tasks
 from trsim.errors import FileError
@@ -17,15 +17,14 @@ from trsim.sweeps.go import go
 from trsim.sweeps.plan import plan
 from trsim.sweeps.slot import Limits
 
-distributed = pytest.importorskip("distributed")
-ROOT = Path(__file__).parents[2]
+distributed = pytest.importorskip("distributed", exc_type=ImportError)
 
 
 @pytest.fixture(scope="module")
 def cluster():
     """Two processes of one thread."""
     before = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = str(ROOT)
+    os.environ["PYTHONPATH"] = PATH
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
     ) as found:

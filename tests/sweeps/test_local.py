@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.elsewhere import PATH
 from tests.sizes import size
 from trsim.sweeps import local
 from trsim.sweeps.slot import Limits
@@ -19,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(autouse=True)
 def importable(monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    monkeypatch.setenv("PYTHONPATH", PATH)
 
 
 def tasks(folder, *what):

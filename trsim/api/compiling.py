@@ -27,7 +27,9 @@ def compiling(hears: Listener, method: str = "") -> None:
     if needed.known:
         return
     warn_of_code_not_kept(hears)
-    hears.say("compiling (once per installation, about half a minute)")
+    hears.say(
+        "compiling (once per installation: 20 s to a minute, longer where processors are busy)"
+    )
     if later:
         from trsim.kernels import ahead
 

@@ -57,8 +57,8 @@ class Ledger:
 
     def __init__(self, folder: Path, shard: str = "") -> None:
         self.path = folder / f"ledger{f'-{shard}' if shard else ''}.jsonl"
-        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | system.O_NOFOLLOW | system.O_NONBLOCK
-        self.file = open(os.open(self.path, flags, 0o666), "ab")  # noqa: SIM115 - see close
+        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | system.O_NONBLOCK
+        self.file = open(system.opened(self.path, flags), "ab")  # noqa: SIM115 - see close
         if self.file.tell() and not _ends_a_line(self.path):
             self.file.write(b"\n")
 
