@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests import small
+from tests import elsewhere, small
 from tests.sizes import size
 from trsim.analyse.cases import unfinished
 from trsim.errors import FileError, UsageError
@@ -175,6 +175,7 @@ def test_as_many_workers_as_one_likes(scenario, whole, tmp_path, jobs):
     assert contents(tmp_path / "sweep") == contents(whole)
 
 
+@elsewhere.needs("fcntl")
 def test_one_parent(copy, scenario):
     from trsim.store.lock import writing
 
@@ -182,6 +183,7 @@ def test_one_parent(copy, scenario):
         made(scenario, copy)
 
 
+@elsewhere.needs("fcntl")
 def test_shards_of_another_plan(scenario, tmp_path):
     """While one shard works no other plan comes into its folder, nor a sweep of all."""
     folder = tmp_path / "sweep"
@@ -348,6 +350,7 @@ def test_killed_at_any_time(scenario, tmp_path):
     assert left == sorted(path.name for path in (calm / "cases").iterdir())
 
 
+@elsewhere.needs("fcntl")
 def test_what_a_killed_sweep_left_unfinished_is_removed(copy, scenario):
     """Plans and indices are written under another name: it is the kill that leaves them."""
     plan_text, index = (copy / "plan.json").read_bytes(), (copy / "index.csv").read_bytes()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.elsewhere import PATH
+from tests.elsewhere import PATH, needs
 from tests.sizes import size
 from trsim.sweeps import local
 from trsim.sweeps.slot import Limits
@@ -72,6 +72,7 @@ def test_over_time_alone(tmp_path):
     assert time.monotonic() - began < 30.0
 
 
+@needs("resource")
 def test_over_memory_alone(tmp_path):
     limits = Limits(memory=300_000_000)
     found = ended(local.run(tasks(tmp_path, "eat", "end", "eat"), 1, limits, job=JOB))
@@ -93,6 +94,7 @@ def test_the_first_alone(tmp_path):
     assert len(found) == 4
 
 
+@needs("fcntl")
 def test_cold_workers_compile_once(tmp_path, monkeypatch):
     """All need the same functions at the same time; each is compiled by one of them."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
