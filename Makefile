@@ -5,7 +5,7 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo paper door tolerances gallery test release-check coverage portable lint bench stress truth mutants wheel clean
+.PHONY: demo paper door tolerances gallery test release-check coverage portable elsewhere lint bench stress truth mutants wheel clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -50,6 +50,10 @@ coverage: .venv/developer
 # the numerical part under other arithmetics than the machine's own; goes on where it was ended
 portable: .venv/developer
 	$(BIN)/python -m tests.portable
+
+# commands, sweeps, files and machine code without what only POSIX has: fcntl, fork, signals and others
+elsewhere: .venv/developer
+	$(BIN)/python -m tests.elsewhere --numprocesses auto --dist worksteal
 
 lint: .venv/developer
 	$(BIN)/ruff format --check $(SOURCES)

@@ -126,7 +126,7 @@ def test_refused_number(value, units, what):
 def test_hints_of_numbers():
     for value, hint in (
         ("sped", "Did you mean 'speed'?"),
-        ("3 n", "Did you mean 'N'?"),
+        ("3 mps", "This number is a speed, in m/s."),
         (True, "This number is a speed, in m/s."),
         ("0,3 mm", "This number is a speed, in m/s.  A decimal point is '.'"),
     ):

@@ -12,7 +12,7 @@ from trsim.cli.check import frame_lines
 from trsim.errors import TrsimError
 from trsim.scenario.load import load, loads, valid
 from trsim.scenario.memory import Memory
-from trsim.sweep.plan import faults, plan
+from trsim.sweeps.plan import faults, plan
 
 FRAME = "{at: [0, 0.3, 0.4], y_axis: [0, 0.6, 0.8]}"
 Y, Z = (0.0, 0.6, 0.8), (0.0, -0.8, 0.6)

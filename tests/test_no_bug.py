@@ -16,8 +16,8 @@ from tests.surgery import ended
 from trsim.errors import ScenarioError, TrsimError
 from trsim.scenario.load import loads
 from trsim.scenario.names import IN_FILES, RESERVED
-from trsim.sweep.folder import read_plan
-from trsim.sweep.ledger import Entry, entries, entry_of
+from trsim.sweeps.folder import read_plan
+from trsim.sweeps.ledger import Entry, entries, entry_of
 
 # --- names -----------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ from trsim.scenario.cases import cases
 from trsim.scenario.expand import expand_text
 from trsim.scenario.load import load, loads, of_tree
 from trsim.solve.simulate import simulate
-from trsim.sweep.plan import faults, plan
+from trsim.sweeps.plan import faults, plan
 
 TEXT = """\
 bodies: {arm: {mass: 2, inertia: 0.1, at: [0.2, 0]}, tip: {mass: 1, inertia: 0.1, at: [0.6, 0]}}

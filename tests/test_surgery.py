@@ -28,7 +28,7 @@ from trsim.assemble.assemble import assemble
 from trsim.scenario.load import loads
 from trsim.solve import simulate as solver
 from trsim.store import checkpoint, resume
-from trsim.sweep.ledger import Entry
+from trsim.sweeps.ledger import Entry
 
 ROOT = Path(__file__).parent.parent
 FILES, LEDGERS, CHECKPOINTS = size(36, 2_000), size(200, 2_000), size(60, 2_000)

@@ -16,7 +16,7 @@ from trsim.scenario.lint import lint
 from trsim.scenario.load import load, loads, locate, valid
 from trsim.scenario.meanings import specs
 from trsim.scenario.memory import Memory
-from trsim.sweep.plan import faults, plan
+from trsim.sweeps.plan import faults, plan
 
 TURNED = "{at: [0, 0.3, 0.4], y_axis: [0, 0.6, 0.8]}"
 TEXT = """\

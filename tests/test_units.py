@@ -45,7 +45,7 @@ def test_titles(text, name, unit):
     [
         ("force [kn]", "unknown unit 'kn'", "Did you mean 'kN'?"),
         ("M [Nm]", "unknown unit 'Nm'", "Did you mean 'N*m'?"),
-        ("a [m/s2]", "unknown unit 's2'", "Did you mean 's^2'?"),
+        ("a [m/s2]", "unknown unit 's2'", "Did you mean 'm/s^2'?"),
         ("q [degrees]", "unknown unit 'degrees'", "Did you mean 'deg'?"),
         ("t [sec]", "unknown unit 'sec'", "Did you mean 's'?"),
         ("force (measured)", "unknown unit 'measured'", ""),

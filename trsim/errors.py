@@ -73,6 +73,10 @@ class TrsimError(Exception):
         return self.show()
 
 
+class TrsimWarning(UserWarning):
+    """What is worth knowing of a scenario or a result, told to Python as a warning."""
+
+
 class UsageError(TrsimError):
     """The command line asks for something that makes no sense."""
 
@@ -92,15 +96,18 @@ class ModelError(TrsimError):
 
 
 class SolverError(TrsimError):
-    """The solver could not go on; what it had is kept."""
+    """The solver could not go on; what it had is kept, for Python as `result`."""
 
     exit_code = 5
+    result: Any = None
 
 
 class CasesFailed(TrsimError):
-    """Some cases of a sweep failed; the others, and what these left, are kept."""
+    """Some cases of a sweep failed; the others, and what these left, are kept, for Python as
+    `result`."""
 
     exit_code = 6
+    result: Any = None
 
 
 class FileError(TrsimError):

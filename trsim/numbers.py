@@ -27,13 +27,15 @@ class Measured(float):
         return made
 
 
-def written(text: str, parameters: Any = None) -> tuple[float, str] | None:
+def written(
+    text: str, parameters: Any = None, wanted: tuple[str, ...] = ()
+) -> tuple[float, str] | None:  # fmt: skip
     """The SI value and the unit of `0.3 mm`, or of a parameter named alone, `gap` or `-gap`.
 
-    None where the text is neither: a number, or an expression.
+    None where the text is neither: a number, or an expression.  wanted: as of `quantity`.
     """
     parameters = parameters or {}
-    found, alone = quantity(text, parameters), _ALONE.fullmatch(text)
+    found, alone = quantity(text, parameters, wanted), _ALONE.fullmatch(text)
     if found is None and alone and isinstance(one := parameters.get(alone[2]), Measured):
         return (-float(one) if alone[1] == "-" else float(one)), one.unit
     return found
@@ -51,7 +53,7 @@ def number(value: Any, units: tuple[str, ...] = ("-",), parameters: Any = None) 
     """The SI value of a YAML number, a quantity or an expression of parameters."""
     parameters = parameters or {}
     if isinstance(value, str):
-        found = quantity(value, parameters)
+        found = quantity(value, parameters, units)
         if found is None:
             return _of_parameters(value, units, parameters)
         if found[1]:

@@ -3,6 +3,8 @@
 locks of files      none: nobody is kept out
 processors allowed  all there are
 flags of `os.open`  not asked for
+owners, modes       not asked: the folder of a user is his by other means
+folders             not opened: files are named by their whole path, and only files are synced
 limits of memory    none: `LIMITS_MEMORY` tells
 """
 
@@ -18,9 +20,13 @@ try:
 except ImportError:
     resource = None  # type: ignore[assignment]
 
+LOCKS = fcntl is not None  # whether files can be locked
 O_DIRECTORY = getattr(os, "O_DIRECTORY", 0)
 O_NOFOLLOW = getattr(os, "O_NOFOLLOW", 0)
 O_NONBLOCK = getattr(os, "O_NONBLOCK", 0)
+O_BINARY = getattr(os, "O_BINARY", 0)  # of Windows, where else ends of lines change on their way
+TELLS_OWNERS = hasattr(os, "geteuid")  # whether owner and mode of a file say who may write it
+OPENS_FOLDERS = os.open in os.supports_dir_fd  # and names files from there
 MEMORY_NOW = "/proc/self/statm"  # pages, of Linux
 LIMITS_MEMORY = resource is not None and os.path.exists(MEMORY_NOW)
 PR_SET_PDEATHSIG = 1  # of prctl(2)
@@ -30,6 +36,11 @@ def processors() -> int:
     """How many this process may use."""
     allowed = getattr(os, "sched_getaffinity", None)
     return len(allowed(0)) if allowed else os.cpu_count() or 1
+
+
+def opened(path: str | os.PathLike, flags: int, mode: int = 0o666) -> int:
+    """The handle of a file, as of `os.open`: no link is followed, and bytes are as they are."""
+    return os.open(path, flags | O_NOFOLLOW | O_BINARY, mode)
 
 
 def user() -> int:

@@ -11,6 +11,7 @@ from functools import cache
 from typing import Any
 
 from trsim.errors import ScenarioError, described, known
+from trsim.meant import meant, nearest
 
 Dimension = tuple[float, ...]  # exponents of m, kg, s, rad
 
@@ -86,34 +87,28 @@ KINDS = {
     "W": "a power",
 }
 
-# what others write -> ours; only for hints
-MEANT = {
-    "Nm": "N*m",
-    "Ns": "N*s",
-    "Nmm": "N*mm",
-    "sec": "s",
-    "second": "s",
-    "msec": "ms",
-    "usec": "us",
-    "degree": "deg",
-    "radian": "rad",
-    "meter": "m",
-    "metre": "m",
-    "newton": "N",
-    "inch": "in",
-    "kgm": "kg*m",
-    "lbs": "lb",
-    "kph": "km/h",
-    "hz": "Hz",
-}
-
+FORM = "Write it like N*m/rad or m/s^2."
 _WORD = re.compile(r"\s*(?:([A-Za-zµ°%]+[0-9]*)|([0-9]+(?:\.[0-9]+)?)|(\*\*|[*/^()-]))")
 _PLAIN = str.maketrans({"μ": "µ", "·": "*", "²": "^2", "³": "^3"})
+
+
+class UnitError(ScenarioError):
+    """A text that is no unit, with what was probably meant."""
+
+    asked: tuple[str, str] = "", ""  # the text, and the part of it that nobody knows
 
 
 @cache
 def unit(text: str) -> tuple[Fraction | float, Dimension]:
     """The SI factor and the dimension of a unit such as N*m/rad, m/s^2, N/m^1.5, 1/(m*s)."""
+    try:
+        return _parsed(text)
+    except UnitError as error:
+        raise no_unit(error.what, *error.asked) from None
+
+
+def _parsed(text: str) -> tuple[Fraction | float, Dimension]:
+    """The same, told without what was meant."""
     if text in ("-", "1", ""):
         return Fraction(1), (0, 0, 0, 0)
     words, end = [], 0
@@ -121,13 +116,20 @@ def unit(text: str) -> tuple[Fraction | float, Dimension]:
     while end < len(plain):
         match = _WORD.match(plain, end)
         if not match or len(plain) > 60:
-            raise ScenarioError(f"not a unit: {described(text)}", "Write it like N*m/rad or m/s^2.")
+            raise _none(text)
         words.append(match[0].strip())
         end = match.end()
     result = _product(words, text)
     if words:
-        raise ScenarioError(f"not a unit: {described(text)}", "Write products with *: N*m.")
+        raise _none(text)
     return result
+
+
+def _none(text: str, word: str = "") -> UnitError:
+    what = f"unknown unit {described(word)}" if word else f"not a unit: {described(text)}"
+    error = UnitError(what, FORM)
+    error.asked = text, word
+    return error
 
 
 def _product(words: list[str], text: str) -> tuple[Fraction | float, Dimension]:
@@ -153,14 +155,12 @@ def _power(words: list[str], text: str) -> tuple[Fraction | float, Dimension]:
         factor, dimension = Fraction(1), BASE[word]
     elif word in DERIVED:
         number, of = DERIVED[word]
-        factor, dimension = unit(of)
+        factor, dimension = _parsed(of)
         factor = factor * (Fraction(number) if isinstance(number, str) else number)
     elif not word or not word[0].isalpha():
-        raise ScenarioError(f"not a unit: {described(text)}", "Write it like N*m/rad or m/s^2.")
+        raise ScenarioError(f"not a unit: {described(text)}", FORM)
     else:
-        close = _meant(word)
-        hint = known(word, [*BASE, *DERIVED], close)
-        raise ScenarioError(f"unknown unit {described(word)}", hint)
+        raise _none(text, word)
     if words and words[0] in ("^", "**"):
         words.pop(0)
         sign = -1 if words and words[0] == "-" and words.pop(0) else 1
@@ -172,12 +172,34 @@ def _power(words: list[str], text: str) -> tuple[Fraction | float, Dimension]:
     return factor, dimension
 
 
-def _meant(word: str) -> str | None:
-    """What an unknown unit probably means, where the nearest by letters would mislead."""
-    plain = word.rstrip("0123456789")
-    if plain != word and plain in {**BASE, **DERIVED}:  # s2
-        return f"{plain}^{word.removeprefix(plain)}"
-    return MEANT.get(plain) or MEANT.get(plain.lower().removesuffix("s"))
+def no_unit(what: str, text: str, word: str = "", wanted: tuple[str, ...] = ()) -> UnitError:
+    """The error of a text that is no unit; word: the part that nobody knows."""
+    words = [*BASE, *DERIVED]
+    should = dimensions(wanted)
+    found, close = meant(text, words, _parsed, should), None
+    if found and (not should or unit(found[0])[1] in should):
+        close = found[0]
+    elif found is None and word:
+        close = nearest(word, words)
+    hints = [f"Did you mean '{close}'?"] if close else []
+    if found and not close and found[1] and (name := kind(unit(found[0])[1])):
+        hints.append(f"'{found[0]}' is {name}.")
+    if wanted:
+        hints.append(units_hint(wanted))
+        simple = [unit(text)[1] for text in wanted if text in words]
+        alike = [one for one in words if unit(one)[1] in simple]
+        hints += [f"Known: {', '.join(alike)}."] if alike else []
+    elif word:
+        hints.append(known(word, words, close).removeprefix(f"Did you mean '{close}'?  "))
+    error = UnitError(what, "  ".join(hint for hint in hints if hint) or FORM)
+    error.asked = text, word
+    return error
+
+
+def dimensions(units: tuple[str, ...]) -> tuple[Dimension, ...]:
+    """The dimensions of units; an angle may also have none."""
+    found = tuple(unit(text)[1] for text in units if text not in ("-", "1"))
+    return (*found, unit("rad/rad")[1]) if found and unit("rad")[1] in found else found
 
 
 _TITLE = re.compile(r"(.*?)\s*(?:\[([^][]*)\]|\(([^()]*)\))\s*", re.DOTALL)
@@ -201,10 +223,13 @@ def titled(text: str) -> tuple[str, str]:
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(.*)", re.DOTALL)
 
 
-def quantity(text: str, names: Any = ()) -> tuple[float, str] | None:
+def quantity(
+    text: str, names: Any = (), wanted: tuple[str, ...] = ()
+) -> tuple[float, str] | None:  # fmt: skip
     """The SI value of `0.3 mm` and the unit as written; None if it is no number with a unit.
 
-    "5/s" is a quantity unless `s` is one of the names an expression may use here.
+    "5/s" is a quantity unless `s` is one of the names an expression may use here.  wanted: units of
+    the number that is asked for, for the hint where there is an error.
     """
     match = _NUMBER.fullmatch(text)
     if not match or len(text) > 200:
@@ -224,7 +249,10 @@ def quantity(text: str, names: Any = ()) -> tuple[float, str] | None:
     elif rest and not re.match(r"[A-Za-zµμ°%]|1\s*/", rest):
         return None
     value = float(number)
-    factor, _ = unit(rest)
+    try:
+        factor, _ = unit(rest)
+    except UnitError as error:
+        raise no_unit(error.what, *error.asked, wanted) from None
     # decimal fractions are exact: 0.7 mm is the same number as 0.0007
     if isinstance(factor, Fraction) and 1e-99 < abs(value) < 1e99:
         return float(Fraction(number) * factor), rest

@@ -73,7 +73,7 @@ class Column:
 
     def number(self, item: Any, parameters: dict) -> float:
         """The SI value of an entry.  Raises ScenarioError, also for a unit that does not fit."""
-        found = written(item, parameters) if isinstance(item, str) else None
+        found = written(item, parameters, self.allowed) if isinstance(item, str) else None
         if found and found[1]:
             if self.whole:
                 what = f"{described(item)} has a unit, and so has its column: {self.unit}"
@@ -123,7 +123,7 @@ class _FunctionUnit(Unit):
     def _read(self, value: Any, parameters: dict, names: dict) -> FunctionSpec:
         if isinstance(value, dict):
             return self._table(value, parameters, names)
-        if isinstance(value, str) and quantity(value, {"t", *parameters}) is None:
+        if isinstance(value, str) and quantity(value, {"t", *parameters}, self.units) is None:
             node = expressions.substitute(expressions.parse(value), parameters)
             if node[0] != "number":
                 return FunctionSpec("expression", node=expressions.renamed(node, names))
@@ -151,7 +151,7 @@ class _FunctionUnit(Unit):
             head, rows = rows[0], rows[1:]
             own = within("table", within, 0, _of_titles, head, own)
         columns = within("table" if head else "units", self._own, own)
-        x, y, units = within("table", self._columns, rows, columns, parameters)
+        x, y, units = within("table", self._columns, rows, columns, parameters, bool(head))
         first, dot, rest = of.partition(".")
         of = names.get(first, first) + dot + rest
         return FunctionSpec("table", x=x, y=y, of=of, ends=ends, units=units, interpolation=way)
@@ -168,19 +168,21 @@ class _FunctionUnit(Unit):
                 within(k, check_dimension, text, allowed[k])
         return [Column(*pair) for pair in zip(units, allowed, strict=True)]
 
-    def _columns(self, rows: Any, columns: list[Column], parameters: dict) -> Any:
-        """x, y and their units as written."""
+    def _columns(self, rows: Any, columns: list[Column], parameters: dict, headed: bool) -> Any:
+        """x, y and their units as written; headed: whether there was a row of titles as well."""
         if not isinstance(rows, list | tuple) or len(rows) < 2:
             raise ScenarioError(f"must be two or more rows [x, y], got {described(rows)}")
         last = -math.inf
         points = []
-        for k, row in enumerate(rows):
+        for k, row in enumerate(rows, headed):
             if not isinstance(row, list | tuple) or len(row) != 2:
                 raise ScenarioError(f"a row is [x, y], got {described(row)}", path=(k,))
             if not all(isinstance(item, str | int | float) for item in row):
                 raise ScenarioError("a row is two numbers", path=(k,))
-            pairs = zip(columns, row, strict=True)
-            x, y = (within(k, column.number, item, parameters) for column, item in pairs)
+            pairs = enumerate(zip(columns, row, strict=True))
+            x, y = (
+                within(k, within, j, column.number, item, parameters) for j, (column, item) in pairs
+            )
             if x <= last:
                 raise ScenarioError(f"x must rise, got {x:g} after {last:g}", path=(k,))
             last = x

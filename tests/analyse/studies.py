@@ -1,4 +1,4 @@
-"""A study as trsim.sweep.study gives it, of runs that were made already."""
+"""A study as trsim.sweeps.study gives it, of runs that were made already."""
 
 from dataclasses import dataclass, field
 from pathlib import Path

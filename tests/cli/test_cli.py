@@ -186,7 +186,7 @@ def test_bug_is_one_line(scenario, trsim, answer, monkeypatch):
     def broken(*_):
         raise ZeroDivisionError("division by zero")
 
-    monkeypatch.setattr("trsim.cli.check.described", broken)
+    monkeypatch.setattr("trsim.api.check.described", broken)
     code, out, err = trsim("check", "crank.yaml")
     assert (code, out) == (1, "")
     assert "ZeroDivisionError: division by zero" in err

@@ -27,8 +27,8 @@ from trsim.solve.simulate import simulate
 from trsim.statuses import STATUSES, Status
 from trsim.store.describe import CPU
 from trsim.store.hdf5 import write
-from trsim.sweep.folder import write_plan
-from trsim.sweep.plan import plan
+from trsim.sweeps.folder import write_plan
+from trsim.sweeps.plan import plan
 
 VARIED = ("--set", "solver.tolerance=[1e-6]", "-o", "sweep", "-j", "1", "--retries", "0")
 GOOD = {
@@ -52,8 +52,8 @@ GOOD = {
 SEAMS = {  # what a command calls to do its work
     "init": "trsim.cli.init.write",
     "run": "trsim.cli.run.one",
-    "sweep": "trsim.sweep.go.go",
-    "status": "trsim.sweep.study.study",
+    "sweep": "trsim.api.sweep.go",
+    "status": "trsim.sweeps.study.study",
     "check": "trsim.cli.check.one",
     "statics": "trsim.cli.statics.one",
     "report": "trsim.report.report",

@@ -3,6 +3,7 @@
 import time
 
 from tests.store import outside
+from trsim.api import compiling
 from trsim.cli import progress
 from trsim.cli.frame import Answer
 
@@ -32,12 +33,12 @@ def test_cache_that_cannot_be_written(scenario, capsys, monkeypatch, tmp_path):
     """Said once, with the reason and the variable, where something has to be compiled."""
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    progress.warn_of_code_not_kept(Answer("run", False))
+    compiling.warn_of_code_not_kept(Answer("run", False))
     err = capsys.readouterr().err
     assert "every run compiles anew" in err and "file/trsim/code: cannot be written: Not a" in err
     assert "XDG_CACHE_HOME" in err
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "good"))
-    progress.warn_of_code_not_kept(Answer("run", False))
+    compiling.warn_of_code_not_kept(Answer("run", False))
     assert capsys.readouterr().err == ""
     assert list((tmp_path / "good/trsim/code").iterdir()) == []
 

@@ -8,9 +8,9 @@ from tests import small
 from trsim.errors import FileError
 from trsim.solve import simulate as solver
 from trsim.store.target import check_writable
-from trsim.sweep import job
-from trsim.sweep.go import sweep_out
-from trsim.sweep.ledger import Ledger, entries
+from trsim.sweeps import job
+from trsim.sweeps.go import sweep_out
+from trsim.sweeps.ledger import Ledger, entries
 
 PRECIOUS = b"the only copy of something\n"
 

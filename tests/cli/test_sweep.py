@@ -2,7 +2,7 @@
 
 import pytest
 
-from trsim.sweep.study import study
+from trsim.sweeps.study import study
 
 B = "joints.B.clearance"
 FAST = ("--set", "solver.end=0.5 ms", "-j", "1", "-o", "sw")
@@ -79,7 +79,7 @@ def test_shards(scenario, trsim):
     ],
 )  # fmt: skip
 def test_refused(scenario, trsim, more, code, what, monkeypatch):
-    monkeypatch.setattr("trsim.sweep.dask.CONNECTING", 0.5)  # s; nobody answers there
+    monkeypatch.setattr("trsim.sweeps.dask.CONNECTING", 0.5)  # s; nobody answers there
     vary = ("sweep", "crank.yaml", "--set", f"{B}=[0.4 mm]", *FAST)
     found, _, err = trsim(*vary, *more)
     assert (found, what in err) == (code, True), err

@@ -9,6 +9,7 @@ import h5py
 import pytest
 
 from tests import small
+from tests.elsewhere import needs
 from tests.store import outside
 from trsim.errors import FileError, UsageError
 from trsim.store import target as targets
@@ -210,6 +211,7 @@ def failing(number):
     return fails
 
 
+@needs("resource")
 def test_export_to_a_full_disk(folder):
     """Told of the table, not of the file it is made of; nothing is left of it."""
     limited = "import resource as r; r.setrlimit(r.RLIMIT_FSIZE, (20000, 20000))\n"
@@ -232,6 +234,7 @@ def test_export_that_is_interrupted_leaves_nothing(folder, trsim, monkeypatch):
     assert set(folder.iterdir()) == before
 
 
+@needs("resource")
 @pytest.mark.parametrize("limit", [100_000, 400_000])
 def test_recover_to_a_full_disk(limit, folder):
     limited = f"import resource as r; r.setrlimit(r.RLIMIT_FSIZE, ({limit}, {limit}))\n"
@@ -243,6 +246,7 @@ def test_recover_to_a_full_disk(limit, folder):
     assert not [path for path in folder.iterdir() if path.name.startswith("y.h5")]
 
 
+@needs("resource")
 def test_report_to_a_full_disk(folder):
     limited = "import resource as r; r.setrlimit(r.RLIMIT_FSIZE, (4000, 4000))\n"
     code = limited + "from trsim.cli import main; main(['report', 'x.h5', '-o', 'figures', '-q'])"

@@ -10,7 +10,7 @@ from trsim.assemble.assemble import assemble
 from trsim.errors import TrsimError
 from trsim.scenario.load import load, loads, locate
 from trsim.scenario.load_sets import told
-from trsim.sweep.plan import faults, plan
+from trsim.sweeps.plan import faults, plan
 
 from ..runs import run
 

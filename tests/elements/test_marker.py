@@ -12,7 +12,7 @@ from trsim.scenario.explain import explained
 from trsim.scenario.lint import lint
 from trsim.scenario.load import loads, valid
 from trsim.scenario.memory import Memory
-from trsim.sweep.plan import plan
+from trsim.sweeps.plan import plan
 
 from ..runs import built, run
 

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.elsewhere import PATH, needs
+from trsim import system
 from trsim.kernels.lock import turn
 
-ROOT = Path(__file__).parents[2]
 KEY, OTHER = "a" * 20, "b" * 20
 PATIENCE = 60.0  # s
 
@@ -38,7 +39,7 @@ def started(tmp_path):
     running = []
 
     def start(code, *arguments):
-        environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path)}
+        environment = {**os.environ, "PYTHONPATH": PATH, "XDG_CACHE_HOME": str(tmp_path)}
         command = [sys.executable, "-c", code, *map(str, arguments)]
         running.append(
             subprocess.Popen(  # noqa: S603
@@ -66,6 +67,7 @@ def alive(pid):
         return False
 
 
+@needs("fcntl")
 def test_one_process_at_a_time(started, tmp_path):
     lock = tmp_path / "lock"
     process, told = started(HOLDS, lock, KEY)
@@ -84,7 +86,7 @@ def test_no_lock_where_there_can_be_none(tmp_path):
 
 
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="there is no second process")
+@pytest.mark.skipif(system.processors() < 2, reason="there is no second process")
 def test_the_second_process_ends_with_the_first(end, started, tmp_path):
     process, pid = started(BEGINS)
     assert alive(int(pid))

@@ -21,7 +21,7 @@ from trsim.kernels import fingerprint, machine
 from trsim.kernels.lazy import Lazy, internal
 from trsim.kernels.machine import Caller, Compiled
 from trsim.kernels.signatures import f8, float64
-from trsim.sweep.slot import ONE_THREAD
+from trsim.sweeps.slot import ONE_THREAD
 
 # --- every kernel of the package -----------------------------------------------------------------
 

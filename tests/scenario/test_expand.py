@@ -8,7 +8,7 @@ import pytest
 from trsim.errors import FileError, ScenarioError, TrsimError, UsageError
 from trsim.scenario.expand import DEEPEST, MOST, expand, expand_text, parameters, rows
 from trsim.scenario.load import load
-from trsim.sweep.plan import plan
+from trsim.sweeps.plan import plan
 
 from ..watching import watched
 

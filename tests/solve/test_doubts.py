@@ -12,7 +12,7 @@ from trsim.scenario.load import load, loads
 from trsim.solve.diagnose.doubts import doubts, of_start
 from trsim.solve.start.consistent import start
 from trsim.solve.start.projected import projected
-from trsim.sweep.plan import plan
+from trsim.sweeps.plan import plan
 
 from ..runs import run
 

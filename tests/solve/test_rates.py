@@ -8,7 +8,7 @@ import pytest
 from trsim.errors import ModelError, ScenarioError, TrsimError
 from trsim.scenario.load import load, loads
 from trsim.solve.start.consistent import start
-from trsim.sweep.plan import plan
+from trsim.sweeps.plan import plan
 
 from ..linkages import REVERSER, flat_parallelogram, four_bar, slider_crank
 from ..runs import assemble, built, run

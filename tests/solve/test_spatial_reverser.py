@@ -11,7 +11,7 @@ import pytest
 from trsim.cli import main
 from trsim.errors import ModelError
 from trsim.scenario.load import load, loads
-from trsim.sweep.plan import plan
+from trsim.sweeps.plan import plan
 
 from ..linkages import REVERSER, spatial
 from ..mechanisms import table

@@ -9,14 +9,15 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tests import small
+from tests.elsewhere import PATH
+from tests.elsewhere import ROOT as ROOT
 
-ROOT = Path(__file__).parents[2]
 LONG = "solver.end=1000"
 
 # `trsim run`, telling the simulated time of every block before it is stored; from the first one on
 # no file may grow beyond LIMIT (not before: kernels may have to be compiled)
 TELLING = """
-import os, resource, sys
+import os, sys
 from trsim.cli import main
 from trsim.solve import simulate as module
 original = module.simulate
@@ -28,6 +29,7 @@ def told(*given):
         except StopIteration as stop:
             return stop.value
         if limit := int(os.environ.get("LIMIT", 0)):
+            import resource
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
         os.write(1, f"{block.time!r} {len(block.rows)}\\n".encode())
         yield block
@@ -50,7 +52,7 @@ def started(folder, *words, stdin=None, stdout=subprocess.PIPE, **environment):
     given = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     return subprocess.Popen(  # noqa: S603
         [sys.executable, *words], cwd=folder, text=True,
-        env={**given, "PYTHONPATH": str(ROOT), **environment},
+        env={**given, "PYTHONPATH": PATH, **environment},
         stdin=stdin, stdout=stdout, stderr=subprocess.PIPE,
     )  # fmt: skip
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests import small
+from tests.elsewhere import needs
 from tests.sizes import size
 from tests.store import outside
 from tests.store.outside import ROOT, started
@@ -115,12 +116,14 @@ def part(result, folder, kind, begin, end):
     return Counter(found)
 
 
+@needs("alarm")
 def test_truncated(result, tmp_path):
     found = outcomes(result, tmp_path, "cut", CUTS)
     print(f"{CUTS} truncations: {dict(found)}")
     assert found == {"refused": CUTS}
 
 
+@needs("alarm")
 def test_flipped(result, tmp_path):
     """Of the bytes that hold something, at least NOTICED are; the rest change nothing."""
     found = outcomes(result, tmp_path, "flip", FLIPS)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.cli.conftest import faults
+from tests.elsewhere import needs
 from tests.sizes import RELEASE, size
 from tests.store import outside
 from trsim.store.read import read
@@ -19,6 +20,7 @@ ROWS = size(1_000_000, 10_000_000)
 SIGNALS = [(signal.SIGINT, 130), (signal.SIGTERM, 143)]
 
 
+@needs("resource")
 @pytest.mark.parametrize("limit", LIMITS)
 def test_full_disk(limit, tmp_path):
     """Told in two lines with path and bytes; what was flushed can be read."""
@@ -121,6 +123,7 @@ print(json.dumps({"seconds": took, "start": held[2], "most": max(held), "end": r
 """
 
 
+@needs("resource")
 def test_memory_does_not_grow(tmp_path):
     process = outside.started(tmp_path, "-c", MANY, str(ROWS), "x.h5")
     out, err = process.communicate()

@@ -15,8 +15,8 @@ import pytest
 
 from tests import small
 from tests.sizes import size
-from tests.sweep.test_go import contents
-from trsim import store, sweep
+from tests.sweeps.test_go import contents
+from trsim import store, sweeps
 from trsim.assemble.assemble import assemble
 from trsim.errors import FileError, UsageError
 from trsim.scenario.load import loads
@@ -26,16 +26,16 @@ from trsim.store.lock import refuse_if_written
 from trsim.store.plain import SIZE
 from trsim.store.recover import recover
 from trsim.store.target import CHECKPOINT, LOCK, PART
-from trsim.sweep import job
-from trsim.sweep.go import go
-from trsim.sweep.plan import plan
+from trsim.sweeps import job
+from trsim.sweeps.go import go
+from trsim.sweeps.plan import plan
 
 ENDING = {".part": PART, ".part.new": PART, ".lock": LOCK, ".checkpoint": CHECKPOINT,
           ".checkpoint.new": CHECKPOINT}  # fmt: skip
 SETS = ("joints.B.clearance=[0.4 mm, 0.5 mm]", "solver.end=0.5 ms")
 
 
-WRITERS = tuple(f"{Path(module.__file__).parent}/" for module in (store, sweep, h5py))
+WRITERS = tuple(f"{Path(module.__file__).parent}/" for module in (store, sweeps, h5py))
 ENOUGH = 4096  # bytes: what is longer is a file with rows
 
 

@@ -9,11 +9,14 @@ import time
 import pytest
 
 from tests import small
+from tests.elsewhere import needs
 from tests.store import outside
 from trsim.cli import main
 from trsim.errors import FileError
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.read import read
+
+pytestmark = needs("fcntl", "SIGSTOP")
 
 FAST = ("--set", "solver.end=1ms")
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests import small
+from tests.elsewhere import needs
 from tests.sizes import size
 from tests.store import outside
 from trsim.errors import FileError
@@ -46,6 +47,7 @@ def stopped(process, told, wait):
     return when
 
 
+@needs("SIGSTOP")
 @pytest.mark.parametrize("waits", KILLS, ids=str)
 def test_killed_run(waits, tmp_path, record_property):
     """One process, stopped at each of some instants: its folder is what a kill would leave."""

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 from tests import small
+from tests.elsewhere import PATH, needs
 from tests.store import outside
 from trsim.assemble.assemble import assemble
 from trsim.assemble.instances import Column
@@ -179,12 +180,13 @@ def test_a_disk_without_room_to_go_on(tmp_path, monkeypatch, scenario, mechanism
     monkeypatch.setattr(solver, "VISIT", 15)
     cut(path, scenario, mechanism, 2, closed=True)
     kept = checkpoint.load(checkpoint.beside(path))
-    left = r"run\.h5\.part holds the run until t = \S+ s; `trsim recover .*` goes on with the run"
+    left = r"run\.h5\.part holds the run until t = \S+ s; `trsim recover .*` makes it a result "
+    left += "file, `trsim run x.yaml --resume` goes on with the run"
     for module, name in ((hdf5, "check_room"), (checkpoint, "synced")):
         running = solver.simulate(scenario, mechanism, kept.state)
         with monkeypatch.context() as patch, pytest.raises(FileError) as error:
             patch.setattr(module, name, full)
-            around = hdf5.Around("trsim run x.yaml", ALWAYS, kept)
+            around = hdf5.Around("", ALWAYS, kept, again="trsim run x.yaml --resume")
             write(path, scenario, mechanism, running, around)
         assert "No space left on device" in error.value.what and error.value.file
         assert re.search(left, error.value.hint), error.value.hint
@@ -198,7 +200,7 @@ def test_a_disk_without_room_to_go_on(tmp_path, monkeypatch, scenario, mechanism
 def trsim(folder, *arguments):
     """`trsim run` of the long scenario; code, document, stderr."""
     command = [sys.executable, "-m", "trsim", "run", "crank.yaml", "--json", *arguments]
-    environment = {"PYTHONPATH": str(outside.ROOT)}
+    environment = {"PYTHONPATH": PATH}
     done = subprocess.run(  # noqa: S603
         command, cwd=folder, env={**os.environ, **environment}, capture_output=True,
         text=True, timeout=120,
@@ -242,6 +244,7 @@ def test_signal_and_resume(number, code, tmp_path, unbroken):
     assert {p.name for p in (tmp_path / "runs").iterdir()} == {"crank.h5"}
 
 
+@needs("resource")
 def test_full_disk_and_resume(tmp_path, unbroken):
     process = outside.begun(tmp_path, *END, "--checkpoint", str(ALWAYS), limit=8_000_000)
     _, err = process.communicate(timeout=60)

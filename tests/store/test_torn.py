@@ -12,6 +12,7 @@ import h5py
 import pytest
 
 from tests import small
+from tests.elsewhere import needs
 from trsim.assemble.assemble import assemble
 from trsim.errors import FileError
 from trsim.scenario.load import loads
@@ -121,6 +122,7 @@ def expected(story, tmp_path_factory):
         return {name: file[name][:] for name in rows}
 
 
+@needs("pwrite")
 def test_killed_at_every_write(story, expected, tmp_path):
     """Between the flushes the rows fill a chunk and begin another."""
     path, refused = tmp_path / "run.h5.part", 0
@@ -139,6 +141,7 @@ def test_killed_at_every_write(story, expected, tmp_path):
     assert read(tmp_path / "x.h5").rows > CHUNK
 
 
+@needs("pwrite")
 def test_what_no_flush_left_is_damage(story, expected, tmp_path):
     """A torn chunk whose first rows are others than at the flush before is not mended."""
     path = tmp_path / "run.h5.part"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import yaml
 
-from tests.sweep.test_go import here
+from tests.sweeps.test_go import here
 from trsim.studies import STUDIES, load
 from trsim.studies.crew_door import STUDY, checks
 from trsim.studies.crew_door.side_view import LEAN, world
@@ -16,8 +16,8 @@ from trsim.studies.numbers import number, word
 from trsim.studies.runs import Runs
 from trsim.studies.single import apart_by, bounded, differ, grows, other_signs, part_of
 from trsim.studies.study import paper
-from trsim.sweep.go import go
-from trsim.sweep.plan import plan
+from trsim.sweeps.go import go
+from trsim.sweeps.plan import plan
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 

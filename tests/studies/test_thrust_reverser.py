@@ -13,7 +13,7 @@ import yaml
 
 from tests import small
 from tests.report.test_figures import drawn
-from tests.sweep.test_go import here
+from tests.sweeps.test_go import here
 from trsim.analyse.fluctuation import fluctuation
 from trsim.analyse.outputs import scalar
 from trsim.cli import main
@@ -58,8 +58,8 @@ from trsim.studies.tables import tally
 from trsim.studies.thrust_reverser import STUDY
 from trsim.studies.thrust_reverser.claims import CLAIMS
 from trsim.studies.thrust_reverser.figures import FIGURES, chain
-from trsim.sweep.go import go
-from trsim.sweep.plan import plan
+from trsim.sweeps.go import go
+from trsim.sweeps.plan import plan
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 MEMBERS = np.array([1.0, 1.02, 0.99, 1.01])  # what an ensemble of four spreads by
@@ -435,7 +435,7 @@ def test_a_folder_that_is_no_study(tmp_path, monkeypatch):
     with pytest.raises(FileError):
         paper(STUDY, tmp_path, tmp_path / "page")
     plain = SimpleNamespace(keys=("joints.A.clearance",), cases=())
-    monkeypatch.setattr("trsim.sweep.study.study", lambda folder: plain)
+    monkeypatch.setattr("trsim.sweeps.study.study", lambda folder: plain)
     with pytest.raises(UsageError, match="not of a study"):
         paper(STUDY, tmp_path, tmp_path / "page")
 

@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from tests.report.test_figures import drawn
-from tests.sweep.test_go import here
+from tests.sweeps.test_go import here
 from trsim.assemble.assemble import assemble
 from trsim.errors import UsageError
 from trsim.report.animation.motion import motion
@@ -40,9 +40,9 @@ from trsim.studies.thrust_reverser.claims.spatial import CLAIMS, CONCLUSIONS
 from trsim.studies.thrust_reverser.figures import FIGURES, mechanism, sticking
 from trsim.studies.thrust_reverser.figures.canvas import Canvas, view
 from trsim.studies.thrust_reverser.peaks import PUBLISHED, ends, peaks
-from trsim.sweep.go import go
-from trsim.sweep.plan import plan
-from trsim.sweep.study import study
+from trsim.sweeps.go import go
+from trsim.sweeps.plan import plan
+from trsim.sweeps.study import study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios" / "thrust_reverser"
 SUPPLY = {"stiffness": 3.2e6, "damping": 4e3, "mass": 2.0}

@@ -6,10 +6,11 @@ from typing import Any, NamedTuple
 
 import click
 
-from trsim.cli.frame import NAMED, Answer, Stop, framed
-from trsim.cli.given import chosen, known_method, seconds, tolerance
-from trsim.cli.running import look, placed
-from trsim.cli.source import loaded, stem
+from trsim.api.given import chosen, known_method, seconds, tolerance
+from trsim.api.running import placed
+from trsim.api.source import loaded, stem
+from trsim.api.stop import Stop, look
+from trsim.cli.frame import NAMED, Answer, framed
 from trsim.errors import ScenarioError, TrsimError
 from trsim.scenario.methods import METHODS
 
@@ -73,7 +74,7 @@ class Options(NamedTuple):
 
 def one(answer: Answer, source: str, folder: Path, given: Options) -> Any:
     """The study of a scenario; what was measured until a signal, if one came."""
-    from trsim.cli.progress import compiling
+    from trsim.api.compiling import compiling
 
     scenario = loaded(source, given.sets)
     if scenario.solver.end is None:

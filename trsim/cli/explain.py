@@ -16,7 +16,8 @@ INDENT = 4
 @click.argument("word", required=False)
 @framed
 def command(answer: Answer, word: str | None) -> None:
-    """Say what WORD is: an element, a section, a key or a function of a scenario file.
+    """Say what WORD is: an element, a section, a key or a function of a scenario file, what a key
+    may be, what is recorded, a unit, or a topic such as friction.
 
     Without WORD, list all there are.  A key may be named by its place: limit_stop.wall.normal.
     """
@@ -33,6 +34,8 @@ def listed(found: dict[str, list[Any]]) -> Iterator[str]:
     names = {kind: [page["word"] for page in found[kind]] for kind in ("elements", "sections")}
     names["keys"] = sorted({key["place"].rpartition(".")[2] for key in found["keys"]})
     names["functions and keys of tables"] = [page["word"] for page in found["functions"]]
+    names["units"] = [page["word"] for page in found["units"]]
+    names["topics"] = [page["word"] for page in found["topics"]]
     for kind, words in names.items():
         yield f"{kind}:"
         yield from _wrapped("  ".join(words), INDENT)
@@ -40,10 +43,14 @@ def listed(found: dict[str, list[Any]]) -> Iterator[str]:
 
 def lines(found: dict[str, list[Any]]) -> Iterator[str]:
     """The pages of one word."""
-    parts = [list(element(page)) for page in found["elements"]]
+    parts = [_wrapped(f"{page['word']}: {page['text']}", 0) for page in found["topics"]]
+    parts += [list(element(page)) for page in found["elements"]]
     parts += [list(section(page)) for page in found["sections"]]
     parts += [list(key(page, page["place"], 0)) for page in found["keys"]]
+    parts += [list(key(page, page["place"], 0)) for page in found["values"]]
     parts += [list(function(page)) for page in found["functions"]]
+    parts += [list(channel(page)) for page in found["channels"]]
+    parts += [[unit(page) for page in found["units"]]] if found["units"] else []
     for k, part in enumerate(parts):
         yield from ["", *part] if k else part
 
@@ -96,6 +103,18 @@ def key(one: dict[str, Any], name: str, indent: int) -> Iterator[str]:
 def function(page: dict[str, str]) -> Iterator[str]:
     yield page["written"]
     yield from _wrapped(page["meaning"], INDENT)
+
+
+def channel(page: dict[str, Any]) -> Iterator[str]:
+    size = f", {page['size']} numbers" if page["size"] > 1 else ""
+    yield f"{page['name']}: a channel of {page['element']}  [{page['unit']}{size}]"
+    yield from _wrapped(page["meaning"], INDENT)
+
+
+def unit(page: dict[str, Any]) -> str:
+    """A unit, its size in SI, and what is measured in it."""
+    size = "" if page["word"] == page["unit"] else f" = {page['factor']:.9g} {page['unit']}"
+    return f"1 {page['word']}{size.removesuffix(' -')}" + (f", {page['kind']}" * bool(page["kind"]))
 
 
 def as_written(default: Any) -> str:

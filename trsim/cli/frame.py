@@ -5,17 +5,19 @@ import io
 import json
 import math
 import os
+import shlex
 import signal
 import sys
-import threading
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import IO, Any
 
 import click
 
+from trsim.api.hearing import Cases, Listener, Meter
+from trsim.api.stop import INTERRUPTED, Stop, listening
 from trsim.errors import FileError, Place, TrsimError, UsageError, one_line, shown
 
 EXIT_CODES = {
@@ -32,24 +34,15 @@ EXIT_CODES = {
 }
 WORKED_ON = ("scenario", "run", "part")  # arguments that are one file
 READ = (*WORKED_ON, "runs", "scenarios", "folder")  # that may be result files, or hold some
-INTERRUPTED: dict[int, int] = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
 
-class Stop:
-    """What a signal asked for.  Compiled code must not be broken off by an exception of ours: while
-    `patient`, whoever can stop safely looks here."""
-
-    number: int | None = None
-    patient = False
-
-
-class Answer:
+class Answer(Listener):
     """What a command has to tell, collected while it works; documents/ says what that may be."""
 
     def __init__(self, command: str | None, as_json: bool, quiet: bool = False) -> None:
+        super().__init__()
         self.as_json, self.quiet = as_json, quiet
         self.exit_code = 0
-        self.warned: set[str] = set()
         self.data: dict[str, Any] = {
             "command": command,
             "exit_code": 0,
@@ -68,6 +61,35 @@ class Answer:
         if message not in self.warned:
             self.say(message)
         self.warned.add(message)
+
+    def lost(self, error: TrsimError) -> None:
+        """What is not to be had; the rest is done all the same."""
+        self.fail(error)
+
+    @property
+    def command(self) -> str:  # type: ignore[override]
+        """The command line."""
+        return shlex.join(["trsim", *sys.argv[1:]])
+
+    @property
+    def again(self) -> str:  # type: ignore[override]
+        """The command line that goes on with a run."""
+        return self.command if "--resume" in sys.argv else f"{self.command} --resume"
+
+    def doing(self, name: str) -> AbstractContextManager[Callable[[str], None]]:
+        from trsim.cli import progress
+
+        return progress.Doing(self, name)
+
+    def meter(self, name: str, total: float) -> Meter:
+        from trsim.cli import progress
+
+        return progress.Meter(self, name, total)
+
+    def cases(self, name: str, total: int) -> Cases:
+        from trsim.cli import progress
+
+        return progress.Cases(self, name, total)
 
     def put(self, text: str, lines: bool = False) -> None:
         """Data, for a reader, in a line or several; with --json it is in the document instead."""
@@ -189,7 +211,7 @@ def framed(function: Callable[..., None]) -> Callable[..., int]:
 
 def at_fault(options: dict[str, Any]) -> TrsimError | None:
     """What is wrong with a result file that was read, where something unexpected happened."""
-    from trsim.cli.source import is_result
+    from trsim.api.source import is_result
     from trsim.store.suspect import blamed
 
     given = [options[key] for key in READ if options.get(key)]
@@ -201,29 +223,6 @@ def at_fault(options: dict[str, Any]) -> TrsimError | None:
                 if is_result(str(path)) and (found := blamed(path)):
                     return found
     return None
-
-
-@contextmanager
-def listening() -> Iterator[None]:
-    """Signals are told to Stop; afterwards everything is as it was."""
-    Stop.number, Stop.patient = None, False
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {number: signal.signal(number, _stop) for number in INTERRUPTED}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-
-def _stop(number: int, _: Any) -> None:
-    for each in INTERRUPTED:  # the second one ends the process at once
-        signal.signal(each, signal.SIG_DFL)
-    Stop.number = number
-    if not Stop.patient:
-        raise KeyboardInterrupt
 
 
 def tell(text: str) -> None:

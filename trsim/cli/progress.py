@@ -3,14 +3,11 @@
 import sys
 import threading
 import time
-from collections.abc import Generator
 from pathlib import Path
 from typing import Any
 
-from trsim.cli.frame import Answer, Stop
-from trsim.errors import FileError, one_line
-from trsim.scenario.methods import GGL, INDEX_1, METHODS
-from trsim.solve.blocks import Blocks
+from trsim.api.hearing import Listener
+from trsim.errors import one_line
 
 PATIENCE = 1.0  # s: a shorter run shows nothing
 WHILE = 2.0  # s: what takes longer is told
@@ -18,85 +15,11 @@ LINE = 10.0  # s between two lines where there is no terminal
 DRAWN = 0.2  # s between two looks at the bar
 
 
-def compiling(answer: Answer, method: str = "") -> None:
-    """Say so where nothing was compiled on this machine yet.
-
-    method: of a run; its solver is then compiled meanwhile, in a second process.
-    """
-    from trsim.assemble.equations import derivative
-
-    needed, later = derivative, []
-    if method and METHODS[method].rests:
-        from trsim.solve.path.balance import system as needed
-    elif method:
-        # what every run needs, the dearest first; the first process is at the rest meanwhile
-        files = METHODS[method].files.get(INDEX_1, ("scipy_ivp",))
-        march = ("land", "peaks", "complete", "dense_output", "loop")
-        later = [*(f"methods.{name}" for name in reversed(files)), *(f"march.{n}" for n in march)]
-        from trsim.solve.march.complete import complete as needed
-    warn_of_shared_code(answer)
-    if needed.known:
-        return
-    warn_of_code_not_kept(answer)
-    answer.say("compiling (once per installation, about half a minute)")
-    if later:
-        from trsim.kernels import ahead
-
-        ahead.begin(*(f"trsim.solve.{name}" for name in later))
-
-
-def compiling_sparse(answer: Answer, scenario: Any, mechanism: Any) -> None:
-    """Say so where many bodies need a solver that was not compiled yet."""
-    from trsim.solve.simulate import files
-
-    used = files(scenario, mechanism)
-    if used != METHODS[scenario.solver.method].files.get(GGL):
-        return
-    from trsim.solve.methods import radau_ggl
-
-    if radau_ggl.step.known:
-        return
-    answer.say("compiling Radau for many bodies (once per installation, about 15 s)")
-    if len(used) > 1:  # meanwhile the explicit method makes steps
-        from trsim.kernels import ahead
-
-        ahead.begin("trsim.solve.methods.radau_ggl")
-
-
-def warn_of_shared_code(answer: Answer) -> None:
-    """Say so where machine code would come from a folder that others may write in."""
-    from trsim.kernels.kept import refused
-
-    why = refused()
-    if why:
-        answer.warn(
-            "machine code", f"nothing is loaded from the cache: {why}; this command compiles in a "
-            "folder of its own.  Let the cache folder be yours alone (mode 700), or name another "
-            "one by XDG_CACHE_HOME"
-        )  # fmt: skip
-
-
-def warn_of_code_not_kept(answer: Answer) -> None:
-    """Say so where what is compiled cannot be kept for the next run."""
-    from trsim.kernels.kept import folder, make
-    from trsim.store.target import check_writable, file_errors
-
-    try:
-        with file_errors(folder()):
-            make(folder())
-        check_writable(folder())
-    except FileError as error:
-        answer.say(
-            f"warning: machine code cannot be kept, so every run compiles anew: {error.what}; "
-            "the variable XDG_CACHE_HOME names another folder for it"
-        )
-
-
 class Doing:
     """What a command is doing, told once it has taken a while."""
 
-    def __init__(self, answer: Answer, name: str) -> None:
-        self.answer, self.name, self.text, self.late = answer, name, "at work", False
+    def __init__(self, hears: Listener, name: str) -> None:
+        self.hears, self.name, self.text, self.late = hears, name, "at work", False
         self.timer = threading.Timer(WHILE, self._tell)
         self.timer.daemon = True
 
@@ -115,29 +38,7 @@ class Doing:
 
     def _tell(self) -> None:
         self.late = True
-        self.answer.say(f"{self.name}: {self.text} ...")
-
-
-def watched(
-    blocks: Generator[Any, None, Any], answer: Answer, name: str, end: float
-) -> Generator[Any, None, Any]:
-    """The blocks and the outcome of a run, with progress shown in passing.
-
-    Also the place where a run stops when a signal asked for it.
-    """
-    show = Meter(answer, name, end)
-    try:
-        run = Blocks(blocks)
-        for block in run:
-            Stop.patient = True
-            percent = f"{100 * block.time / end:.0f} %, "
-            show.update(block.time, summary(block), percent + summary(block))
-            yield block
-            if Stop.number:
-                raise KeyboardInterrupt
-        return run.outcome
-    finally:
-        show.close()
+        self.hears.say(f"{self.name}: {self.text} ...")
 
 
 def left(elapsed: float, share: float, first: float) -> str:
@@ -146,11 +47,6 @@ def left(elapsed: float, share: float, first: float) -> str:
         return "?"
     seconds = elapsed * (1.0 - share) / (share - first)
     return f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
-
-
-def summary(block: Any) -> str:
-    """How far a run is."""
-    return f"t = {block.time:.4g} s, step {block.step:.1e} s, {block.n_events} contact events"
 
 
 def bar() -> Any:
@@ -175,10 +71,10 @@ class Meter:
     """
 
     def __init__(
-        self, answer: Answer, name: str, total: float, first: float | None = None
+        self, hears: Listener, name: str, total: float, first: float | None = None
     ) -> None:  # fmt: skip
-        self.answer, self.name, self.total, self.first = answer, name, total, first
-        self.drawn = sys.stderr.isatty() and not answer.quiet
+        self.hears, self.name, self.total, self.first = hears, name, total, first
+        self.drawn = sys.stderr.isatty() and not hears.quiet
         self.began = self.last = time.monotonic()
         self.bar: Any = None
 
@@ -192,7 +88,7 @@ class Meter:
         self.last = now
         to_go = left(now - self.began, share, self.first)
         if not self.drawn:
-            self.answer.say(f"{self.name}: {line or told}, {to_go} left")
+            self.hears.say(f"{self.name}: {line or told}, {to_go} left")
             return
         if self.bar is None:
             self.bar = bar()
@@ -208,8 +104,8 @@ class Meter:
 class Cases(Meter):
     """How far a sweep is."""
 
-    def __init__(self, answer: Answer, name: str, total: int) -> None:
-        super().__init__(answer, name, total, 0.0)
+    def __init__(self, hears: Listener, name: str, total: int) -> None:
+        super().__init__(hears, name, total, 0.0)
         self.done = self.failed = 0
 
     def ended(self, one: Any) -> None:

@@ -5,14 +5,12 @@ from typing import Any
 
 import click
 
+from trsim.api.source import same, stem
 from trsim.cli.frame import NAMED, Answer, framed
 from trsim.cli.redundancy import redundancy
 from trsim.cli.resume import Seconds
-from trsim.cli.running import Wanted, placed, ran
-from trsim.cli.source import loaded, same, stem
-from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
+from trsim.errors import TrsimError, UsageError
 from trsim.statuses import ILL
-from trsim.store.target import RESULT, replaceable
 
 
 @click.command("run")
@@ -31,8 +29,8 @@ from trsim.store.target import RESULT, replaceable
 @click.option("--certify-with", metavar="METHOD:TOL", help="The same, with this twin.")
 @framed
 def command(
-    answer: Answer, scenarios: tuple[str, ...], output: str | None, certify_with: str | None,
-    **options: Any,
+    answer: Answer, scenarios: tuple[str, ...], output: str | None, certify: bool,
+    certify_with: str | None, **options: Any,
 ) -> None:  # fmt: skip
     """Simulate SCENARIO files and write result files (HDF5).
 
@@ -44,25 +42,20 @@ def command(
 
     With --certify the twin comes first, into FILE.twin.h5, and is removed when both are compared.
     """
-    answer.data["runs"] = []
-    wanted = Wanted(**options)
-    if certify_with is not None:
-        from trsim.cli.given import chosen
+    from trsim.api.run import failed, wanted
 
-        wanted = wanted._replace(certify=chosen(certify_with, "twin", "--certify-with"))
+    answer.data["runs"] = []
+    how = wanted(**options, certify=certify_with or certify, option="--certify-with")
     for source, target in targets(scenarios, output):
         try:
-            file = replaceable(target, RESULT, [source])
-            summary = one(answer, source, file, wanted)
+            summary = one(answer, source, target, how)
         except TrsimError as error:
             answer.fail(error, about=source)
             continue
         answer.data["runs"].append(summary)
         answer.put(summary["file"])
         if summary["status"] in ILL:
-            at = f"{source}: the solver failed at t = {summary['time']:.6g} s"
-            kept = f"What was computed is in {summary['file']}."
-            answer.fail(SolverError(f"{at}: {summary['reason']}", kept), about=source)
+            answer.fail(failed(source, summary), about=source)
 
 
 def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, Path]]:
@@ -81,30 +74,21 @@ def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, P
     return [(source, target) for target, source in found.items()]
 
 
-def one(answer: Answer, source: str, target: Path, wanted: Wanted) -> dict[str, Any]:
+def one(answer: Answer, source: str, target: Path, how: Any) -> dict[str, Any]:
     """Run one scenario; the summary of its result."""
-    scenario = loaded(source, wanted.sets)
-    if scenario.solver.end is None:
-        what = "field required: end (s)"
-        raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
-    closing, passes = None, None
-    if scenario.sizing is not None:
-        from trsim.cli.sizing import found
+    from trsim.api.run import Work, made
 
-        scenario, passes, closing = found(answer, source, target, scenario, wanted)
-    if wanted.certify:
-        from trsim.cli.certify import twin
-
-        closing = twin(answer, source, target, scenario, wanted)
-    summary = ran(answer, source, target, scenario, wanted, closing)
-    if passes is not None:
-        summary["sizing"] = passes
+    summary = made(answer, Work(source, target, how))
     answer.say(line(summary))
+    if not answer.quiet:
+        from trsim.cli.solved import solved
+
+        answer.say(f"{source}: {solved(summary)}")
     remark(answer, source, summary)
     if "certificate" in summary:
         from trsim.cli.certify import print_certificate
 
-        print_certificate(answer, target, summary["certificate"])
+        print_certificate(answer, Path(summary["file"]), summary["certificate"])
     return summary
 
 

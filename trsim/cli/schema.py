@@ -50,4 +50,4 @@ def write(target: Path, text: str) -> None:
     from trsim.store.target import SCHEMA, file_errors, fresh
 
     with file_errors(target), fresh(target, SCHEMA) as unfinished:
-        unfinished.write_text(text + "\n", encoding="utf-8")
+        unfinished.write_text(text + "\n", encoding="utf-8", newline="\n")

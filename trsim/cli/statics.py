@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
+from trsim.api.source import loaded, stem
 from trsim.cli.frame import NAMED, Answer, framed
 from trsim.cli.modes import shape
-from trsim.cli.source import loaded, stem
 from trsim.errors import TrsimError
 
 SECTIONS = ("bodies", "joints", "drives", "forces", "sensors", "points")
@@ -42,8 +42,8 @@ def command(answer: Answer, scenario: str, output: str | None, sets: tuple[str, 
 
 def one(answer: Answer, source: str, target: Path, scenario: Any) -> dict[str, Any]:
     """The equilibrium of a scenario, also written into a result file."""
-    from trsim.cli.progress import Doing, compiling
-    from trsim.cli.running import placed
+    from trsim.api.compiling import compiling
+    from trsim.api.running import placed
 
     compiling(answer)
     from trsim.scenario.lint import lint
@@ -51,7 +51,7 @@ def one(answer: Answer, source: str, target: Path, scenario: Any) -> dict[str, A
     from trsim.store.hdf5 import write
 
     try:
-        with Doing(answer, source) as doing:
+        with answer.doing(source) as doing:
             doing("looking for the equilibrium")
             resting = at_rest(scenario)
         summary = write(target, resting.scenario, resting.mechanism, blocks(resting))

@@ -14,8 +14,8 @@ SHOWN = 20  # failed cases that are told one by one
 @framed
 def command(answer: Answer, folder: str) -> None:
     """Say how far the sweep in FOLDER is: cases by status, those that failed, the time left."""
-    from trsim.sweep.ledger import counts, in_a_line
-    from trsim.sweep.study import MISSING, study
+    from trsim.sweeps.ledger import counts, in_a_line
+    from trsim.sweeps.study import MISSING, study
 
     found = study(Path(folder))
     told = counts(case.status for case in found.cases)

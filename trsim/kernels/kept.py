@@ -74,10 +74,10 @@ def fault(home: Path) -> str:
         return f"{home} is not an absolute path"
     if not home.exists():
         return ""
-    found = home.stat()
-    if found.st_uid not in (system.user(), 0):
+    found, told = home.stat(), system.TELLS_OWNERS
+    if told and found.st_uid not in (system.user(), 0):
         return _of_another(home, found)
-    if found.st_mode & stat.S_IWOTH and not found.st_mode & stat.S_ISVTX:
+    if told and found.st_mode & stat.S_IWOTH and not found.st_mode & stat.S_ISVTX:
         return _open_to_others(home, found)
     for inner in (home / PLACE[0], home.joinpath(*PLACE)):
         if not os.path.lexists(inner):
@@ -85,9 +85,9 @@ def fault(home: Path) -> str:
         found = inner.lstat()
         if stat.S_ISLNK(found.st_mode):
             return f"{inner} is a link"
-        if found.st_uid != system.user():
+        if told and found.st_uid != system.user():
             return _of_another(inner, found)
-        if found.st_mode & OTHERS:
+        if told and found.st_mode & OTHERS:
             return _open_to_others(inner, found)
     return ""
 
@@ -111,9 +111,9 @@ def make(path: Path) -> None:
 def content(path: Path) -> bytes:
     """A file of ours.  Raises OSError where there is none, or one that others may have written."""
     with _opened(path.parent) as place:
-        handle = os.open(
-            path.name, os.O_RDONLY | system.O_NOFOLLOW | system.O_NONBLOCK, dir_fd=place
-        )
+        flags = os.O_RDONLY | system.O_NOFOLLOW | system.O_NONBLOCK | system.O_BINARY
+        name, within = _from(place, path)
+        handle = os.open(name, flags, **within)
         with open(handle, "rb") as file:
             if not (_mine(handle) and stat.S_ISREG(os.fstat(handle).st_mode)):
                 raise PermissionError(f"{path} may have been written by others")
@@ -126,20 +126,30 @@ def store(path: Path, parts: list[bytes]) -> None:
     part = f"{path.name}.{os.getpid()}-{os.urandom(4).hex()}"
     with _opened(path.parent) as place:
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | system.O_NOFOLLOW
-        handle = os.open(part, flags, 0o600, dir_fd=place)
+        name, within = _from(place, path.with_name(part))
+        handle = os.open(name, flags | system.O_BINARY, 0o600, **within)
         try:
             with open(handle, "wb") as file:
                 file.writelines(parts)
-            os.replace(part, path.name, src_dir_fd=place, dst_dir_fd=place)
+            os.replace(name, _from(place, path)[0], src_dir_fd=place, dst_dir_fd=place)
         except BaseException:
             with suppress(OSError):
-                os.unlink(part, dir_fd=place)
+                os.unlink(name, **within)
             raise
 
 
+def _from(place: int | None, path: Path) -> tuple[str, dict[str, int]]:
+    """How a file is named from an open folder, or without one, and the rest of the call."""
+    return (str(path), {}) if place is None else (path.name, {"dir_fd": place})
+
+
 @contextmanager
-def _opened(path: Path) -> Iterator[int]:
-    """A folder that only the user can write in.  Raises OSError where it is another's."""
+def _opened(path: Path) -> Iterator[int | None]:
+    """A folder that only the user can write in; None where folders are not opened.  Raises OSError
+    where it is another's."""
+    if not system.OPENS_FOLDERS:
+        yield None
+        return
     handle = os.open(path, os.O_RDONLY | system.O_DIRECTORY | system.O_NOFOLLOW)
     try:
         if not _mine(handle):
@@ -152,4 +162,6 @@ def _opened(path: Path) -> Iterator[int]:
 def _mine(handle: int) -> bool:
     """Whether something belongs to the user, and nobody else can write it."""
     found = os.fstat(handle)
+    if not system.TELLS_OWNERS:
+        return True
     return found.st_uid == system.user() and not found.st_mode & OTHERS

@@ -18,7 +18,7 @@ def turn(lock: Path, key: str, wait: bool = True) -> Iterator[bool]:
     """
     try:
         kept.make(lock.parent)
-        handle = os.open(lock, os.O_RDWR | os.O_CREAT | system.O_NOFOLLOW, 0o600)
+        handle = system.opened(lock, os.O_RDWR | os.O_CREAT, 0o600)
     except OSError:
         yield True
         return

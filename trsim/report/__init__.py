@@ -71,7 +71,7 @@ def analysed(
         if not Path(paths[0]).is_dir():
             return of_runs(paths, folder, asked, units)
         from trsim.report import studies
-        from trsim.sweep.study import study
+        from trsim.sweeps.study import study
 
         swept = study(Path(paths[0]))
         found = studies.draw(swept, asked, words(asked.table), folder, units)

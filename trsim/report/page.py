@@ -118,7 +118,7 @@ def write(path: Path, title: str, lead: Sequence[str], sections: Sequence[Sectio
     """Write the page.  Raises FileError where it cannot be written."""
     text = page(title, lead, sections)
     with file_errors(path), fresh(path, PAGE) as unfinished:
-        unfinished.write_text(text, encoding="utf-8")
+        unfinished.write_text(text, encoding="utf-8", newline="\n")
     return path
 
 

@@ -5,13 +5,16 @@ from collections.abc import Iterator
 from typing import Any
 
 from trsim import elements
-from trsim.errors import UsageError, known
+from trsim.errors import ScenarioError, UsageError, known
 from trsim.fields import Spec
-from trsim.scenario.functions import functions
+from trsim.scenario.functions import VALUES, functions
 from trsim.scenario.load import unit_of
 from trsim.scenario.meanings import description, inside, meanings
 from trsim.scenario.scenario import Scenario
 from trsim.scenario.schema import schema
+from trsim.scenario.topics import SWEEP, TOPICS
+from trsim.statuses import STATUSES
+from trsim.units import BASE, DERIVED, kind, si, unit
 
 SIGNS = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<=", "exclusiveMaximum": "<"}
 TYPES = {"integer": "whole number", "string": "text", "boolean": "true or false", "null": ""}
@@ -23,30 +26,84 @@ Page = dict[str, Any]
 
 
 def explained(word: str | None = None) -> dict[str, list[Page]]:
-    """All elements, sections, keys and functions that a word names; without a word, all there are.
+    """All that a word names; without a word, all there is.
 
     A key is named by its place, `limit_stop.wall.normal`, or by the end of it, `normal`; the keys
-    of a mapping come with it.  Raises UsageError for a word nobody knows.
+    of a mapping come with it.  What a key may be, `akima`, and what is recorded, `reaction`, are
+    words too, and so are units and topics.  Raises UsageError for a word nobody knows.
     """
     of = schema()["$defs"]
     kinds = [_element(name, section, of) for name, section in elements.ELEMENTS.items()]
     sections = [_section(name, rule, of) for name, rule in of["Scenario"]["properties"].items()]
     keys = [key for page in (*kinds, *sections) for key in page["keys"]]
     calls = list(functions())
-    if word is not None:
-        words = [page["word"] for page in (*kinds, *sections)]
-        words += [key["place"].rpartition(".")[2] for key in keys]
-        words += [key["place"] for key in keys]
-        kinds = [page for page in kinds if page["word"] == word]
-        sections = [page for page in sections if page["word"] == word]
-        keys = [key for key in keys if f".{word}." in f".{key['place']}."]
-        whole = {f"{page['word']}." for page in (*kinds, *sections)}  # these show their keys
-        keys = [key for key in keys if not key["place"].startswith(tuple(whole))]
-        words += [page["word"] for page in calls]
-        calls = [page for page in calls if page["word"] == word]
-        if not (kinds or sections or keys or calls):
-            raise UsageError(f"nothing is called '{word}'", known(word, words))
-    return {"elements": kinds, "sections": sections, "keys": keys, "functions": calls}
+    found = {
+        "elements": kinds, "sections": sections, "keys": keys, "functions": calls,
+        "values": [], "channels": [], "units": list(units()), "topics": list(_topics()),
+    }  # fmt: skip
+    return found if word is None else _of(word, found)
+
+
+def _of(word: str, every: dict[str, list[Page]]) -> dict[str, list[Page]]:
+    """What of all there is a word names."""
+    found = {kind: [one for one in pages if one.get("word") == word]
+             for kind, pages in every.items()}  # fmt: skip
+    keys = [key for key in every["keys"] if f".{word}." in f".{key['place']}."]
+    pages = (*found["elements"], *found["sections"])
+    whole = tuple(f"{page['word']}." for page in pages)  # these show their keys
+    found["keys"] = [key for key in keys if not key["place"].startswith(whole or "\0")]
+    if not (pages or keys):
+        found["values"] = [key for key in every["keys"] if word in key["type"].split(" | ")]
+        calls = [page for page in every["functions"] if word in VALUES.get(page["word"], ())]
+        found["functions"] += calls
+    found["channels"] = [
+        {"element": page["word"], **channel}
+        for page in every["elements"]
+        for channel in page["channels"]
+        if f".{word}." in f"{channel['name'].removeprefix('NAME')}."
+    ]
+    if word == "units":
+        found["units"] = every["units"]
+    elif word == "functions":
+        found["functions"] = every["functions"]
+    elif not found["units"] and (page := _composed(word)):
+        found["units"] = [page]
+    if not any(found.values()):
+        raise UsageError(f"nothing is called '{word}'", known(word, _words(every)))
+    return found
+
+
+def _words(every: dict[str, list[Page]]) -> list[str]:
+    """All words that are known."""
+    kinds = ("elements", "sections", "topics", "functions")
+    named = [page["word"] for kind in kinds for page in every[kind]]
+    places = [key["place"] for key in every["keys"]]
+    return named + [place.rpartition(".")[2] for place in places] + places
+
+
+def _topics() -> Iterator[Page]:
+    ends = {word: f"A run that ended so: {text}." for word, text in STATUSES.items()}
+    return ({"word": word, "text": text} for word, text in {**ends, **TOPICS}.items())
+
+
+def units() -> Iterator[Page]:
+    """Every word of units."""
+    return (_unit(word) for word in (*BASE, *DERIVED))
+
+
+def _unit(text: str) -> Page:
+    factor, dimension = unit(text)
+    return {"word": text, "factor": float(factor), "unit": si(text), "kind": kind(dimension)}
+
+
+def _composed(text: str) -> Page | None:
+    """A product or a power of units."""
+    if not any(mark in text for mark in "*/^"):
+        return None
+    try:
+        return _unit(text)
+    except ScenarioError:
+        return None
 
 
 def _element(word: str, section: str, of: dict[str, Any]) -> Page:
@@ -81,6 +138,7 @@ def _section(word: str, rule: dict[str, Any], of: dict[str, Any]) -> Page:
     [key] = _keys("", {"properties": {word: rule}}, {}, Scenario)
     held = _held(Scenario, word)
     keys = _keys(word, of[held.__name__], of, held) if held else _keys(word, rule, of)
+    keys = _of_sweep() if word == "sweep" else keys
     module = sys.modules[held.__module__] if held and _tells_a_law(held) else None
     law = module.__doc__ if module else ""
     return {
@@ -122,6 +180,13 @@ def _keys(
     others = entry.get("additionalProperties")
     if isinstance(others, dict) and "description" in others:  # keys the user names
         yield from _keys(place, {"properties": {"NAME": others}}, of)
+
+
+def _of_sweep() -> Iterator[Page]:
+    """The keys of a sweep that are no path."""
+    for name, worded_as, meaning in SWEEP:
+        yield {"place": f"sweep.{name}", "meaning": meaning, "type": worded_as, "unit": None,
+               "required": False, "default": None}  # fmt: skip
 
 
 def _held(spec: type[Spec] | None, key: str) -> type[Spec] | None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from trsim.expressions import FUNCTIONS
-from trsim.varying import TABLE_KEYS
+from trsim.varying import ENDS, INTERPOLATIONS, OUTSIDE, TABLE_KEYS
 
 S = "s = (x - x0)/(x1 - x0), cut to 0..1"
 CALLS = {
@@ -37,6 +37,7 @@ OF_TABLES = {
     "goes on) or error (the run ends); hold unless given",
     "ends": "the same by older words: hold, extrapolate, refuse",
 }
+VALUES = {"interpolation": INTERPOLATIONS, "outside": tuple(OUTSIDE), "ends": ENDS}
 
 
 def functions() -> Iterator[dict[str, str]]:

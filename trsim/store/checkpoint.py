@@ -38,7 +38,14 @@ MAGIC = "trsim checkpoint 1"
 ENDING = ".checkpoint"
 ANEW = "Without --resume the run starts anew."
 SHOWN = 5  # differences in a message
-OUTSIDE = {"cli", "report", "analyse", "studies", "sweep"}  # packages that have no part in a run
+OUTSIDE = {
+    "cli",
+    "report",
+    "analyse",
+    "studies",
+    "sweeps",
+    "api",
+}  # packages that have no part in a run
 DAMAGED = (ValueError, LookupError, TypeError, AttributeError, EOFError, OSError, MemoryError,
            RuntimeError, NotImplementedError, zipfile.BadZipFile, zlib.error)  # fmt: skip
 Arrays = dict[str, NDArray[Any]]
@@ -68,13 +75,12 @@ def waiting(final: Path) -> bool:
     return beside(final).is_file() and (part.exists() or not final.exists())
 
 
-def left(part: Path, path: Path, time: float, command: str) -> str:
-    """What a run that was broken off left, and the commands that use it."""
+def left(part: Path, path: Path, time: float, again: str) -> str:
+    """What a run that was broken off left, and the commands that use it; again: goes on."""
     text = f"{part} holds the run until t = {time:g} s; "
     text += f"`{shlex.join(['trsim', 'recover', str(part)])}` makes it a result file"
-    if path.exists() and command:
-        resumed = "" if "--resume" in command.split() else " --resume"
-        text += f", `{command}{resumed}` goes on with the run"
+    if path.exists() and again:
+        text += f", `{again}` goes on with the run"
     return f"{text}."
 
 

@@ -48,8 +48,11 @@ def let_go(file: h5py.File) -> None:
 
 
 def synced(path: Path) -> None:
-    """Have the system bring a file or a folder to the disk."""
-    handle = os.open(path, os.O_RDONLY)
+    """Have the system bring a file, or where it can a folder, to the disk."""
+    if not system.OPENS_FOLDERS and path.is_dir():
+        return
+    flags = os.O_RDONLY if system.OPENS_FOLDERS else os.O_RDWR
+    handle = os.open(path, flags | system.O_BINARY)
     try:
         os.fsync(handle)
     finally:

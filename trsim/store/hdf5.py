@@ -46,6 +46,7 @@ class Around(NamedTuple):
     kept: Checkpoint | None = None  # where the run goes on
     # adds to a complete file what its hash does not cover, and returns more for the summary
     closing: Closing | None = None
+    again: str = ""  # line that goes on with the run
 
 
 NOTHING_MORE = Around()
@@ -311,7 +312,7 @@ class Running:
 
     def left(self, time: float) -> str:
         """What is there of a run that was broken off."""
-        return checkpoints.left(self.part, self.checkpoint, time, self.around.command)
+        return checkpoints.left(self.part, self.checkpoint, time, self.around.again)
 
     def abandon(self) -> None:
         """Let go of a file that cannot be written."""

@@ -52,12 +52,14 @@ def writing(final: Path) -> Iterator[None]:
         with suppress(OSError):
             path.unlink()
         os.close(handle)
+        if not system.LOCKS:  # where nobody can have it; an open file may not be removed there
+            path.unlink(missing_ok=True)
 
 
 def refuse_if_written(final: Path) -> None:
     """Raise FileError if a process is writing a result file."""
     try:
-        handle = os.open(_beside(final), os.O_RDONLY | system.O_NONBLOCK | system.O_NOFOLLOW)
+        handle = system.opened(_beside(final), os.O_RDONLY | system.O_NONBLOCK)
     except OSError:
         return
     try:
@@ -71,7 +73,7 @@ def _held(path: Path, final: Path) -> int:
     while True:
         if path.is_symlink() or path.is_dir():
             raise in_the_way(path, "it is a link" if path.is_symlink() else "it is a folder")
-        handle = os.open(path, os.O_RDWR | os.O_CREAT | system.O_NOFOLLOW, 0o666)
+        handle = system.opened(path, os.O_RDWR | os.O_CREAT)
         try:
             check_open(handle, path, LOCK)
             _lock(handle, final)

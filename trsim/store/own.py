@@ -19,7 +19,7 @@ ASIDE = "Move it away, or name another file with -o."
 def exists(path: Path, kind: Kind) -> bool:
     """Whether there is a file of ours.  Raises FileError where there is anything else."""
     try:
-        handle = os.open(path, os.O_RDONLY | system.O_NOFOLLOW | system.O_NONBLOCK)
+        handle = system.opened(path, os.O_RDONLY | system.O_NONBLOCK)
     except FileNotFoundError:
         return False
     except OSError as error:
@@ -55,4 +55,4 @@ def remove(path: Path, kind: Kind) -> None:
 def made(path: Path, kind: Kind) -> int:
     """The handle of a new file, in place of one of ours.  Raises FileError, OSError."""
     remove(path, kind)
-    return os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | system.O_NOFOLLOW, 0o666)
+    return system.opened(path, os.O_RDWR | os.O_CREAT | os.O_EXCL)

@@ -62,7 +62,13 @@ def _copied(part: Path, unfinished: Path, final: Path, patience: float) -> dict[
     limit = patience + part.stat().st_size / PACE
     command = child.command("trsim.store.recover", str(part), str(unfinished))
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=limit)  # noqa: S603
+        done = subprocess.run(  # noqa: S603
+            command,
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=limit,
+        )
     except subprocess.TimeoutExpired:
         what = f"{part}: HDF5 could not read it within {limit:.0f} s"
         raise FileError(what, file=str(part)) from None

@@ -50,7 +50,9 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
         time_field,
         Field("kind", "", "what happened", 1, words=KINDS),
         Field("element", "", "where", 2, words=names),
-        Field("speed", speed, "rate of penetration; of the solver: largest eigenvalue, 1/s", 3),
+        Field(
+            "speed", speed, "rate of penetration; of the solver: rate of what is stiffest, 1/s", 3
+        ),
         Field("angle", "rad", "of the contact point around the bearing", 4),
     ]
     if user:

@@ -171,7 +171,7 @@ def _empty(final: Path) -> Path:
     for k in count():
         path = final.with_name(f"{final.name}.{os.getpid()}{f'-{k}' if k else ''}")
         with suppress(FileExistsError):
-            os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | system.O_NOFOLLOW, 0o666))
+            os.close(system.opened(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
             return path
     raise AssertionError
 

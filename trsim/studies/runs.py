@@ -57,7 +57,7 @@ class Runs:
 
     def __init__(self, folder: str | Path, grids: Sequence[str] = (), book: float = BOOK) -> None:
         from trsim.store.read import read
-        from trsim.sweep.study import study
+        from trsim.sweeps.study import study
 
         self.members: dict[str, list[Member]] = {}
         self.missing: dict[str, int] = {}

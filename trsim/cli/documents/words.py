@@ -101,6 +101,41 @@ class FunctionPage(TypedDict):
     meaning: str
 
 
+class ChannelPage(Channel):
+    """A recorded quantity of an element.
+
+    element  after `type:`
+    """
+
+    element: str
+
+
+class UnitPage(TypedDict):
+    """A unit.
+
+    word    as written
+    factor  what one of it is in `unit`
+    unit    SI
+    kind    what is measured in it, in words, or ""
+    """
+
+    word: str
+    factor: float
+    unit: str
+    kind: str
+
+
+class TopicPage(TypedDict):
+    """What there is for a word that is no key.
+
+    word  as asked for
+    text  in words; what stands in backticks can be asked for
+    """
+
+    word: str
+    text: str
+
+
 class Explain(Document):
     """trsim explain.
 
@@ -109,6 +144,10 @@ class Explain(Document):
     sections   of that name
     keys       of that name, and of the mappings they hold
     functions  of expressions, and keys of tables, of that name
+    values     keys that may be it
+    channels   of that name
+    units      of that name
+    topics     of that name
     """
 
     word: str | None
@@ -116,6 +155,10 @@ class Explain(Document):
     sections: list[SectionPage]
     keys: list[Key]
     functions: list[FunctionPage]
+    values: list[Key]
+    channels: list[ChannelPage]
+    units: list[UnitPage]
+    topics: list[TopicPage]
 
 
 class TemplateRow(TypedDict):

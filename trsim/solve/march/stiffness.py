@@ -75,6 +75,13 @@ def longest_calm(r):
 
 
 @internal
+def stiffest(r):
+    """The rate of what sets that, 1/s: of a vibration or of a decay."""
+    w = sqrt(r.vibration)
+    return w if SWINGING * r.decay < DYING * w else r.decay
+
+
+@internal
 def stiff_load(r, h):
     """h over that."""
     return h / longest_calm(r) if r.vibration > 0.0 else 0.0

@@ -23,7 +23,7 @@ from trsim.solve.march.record import (
     TO_IMPLICIT,
     note_event,
 )
-from trsim.solve.march.stiffness import stiff_load
+from trsim.solve.march.stiffness import stiff_load, stiffest
 from trsim.solve.methods.displacements import active
 from trsim.solve.methods.dop853 import FROM_LAST_STAGE, combined
 
@@ -51,21 +51,21 @@ def choose(s, r, b, h, event):
             r.stiff += 1
             r.not_stiff = 0
             if r.stiff >= max(STIFF_STEPS, s.n_v // DEAR):
-                change(s, r, b, IMPLICIT, load)
+                change(s, r, b, IMPLICIT, load, max(rate, stiffest(r)))
         else:
             r.not_stiff += 1
             if r.not_stiff >= RELIEF:
                 r.stiff = 0
         return
     if event:
-        change(s, r, b, EXPLICIT, 0.0)
+        change(s, r, b, EXPLICIT, 0.0, 0.0)
         return
     if r.jacobian_rate < 0.0:
         r.jacobian_rate = implicit_rate(s, r, b)
     load = h * r.jacobian_rate
     r.stiff = r.stiff + 1 if load < EASY else 0
     if r.stiff >= CHEAP_STEPS:
-        change(s, r, b, EXPLICIT, load)
+        change(s, r, b, EXPLICIT, load, r.jacobian_rate)
 
 
 @internal
@@ -96,8 +96,9 @@ def calmed(s, r, h, rate):
 
 
 @internal
-def change(s, r, b, method, load):
-    """Go on with the other method; the line says how stiff the last step was."""
+def change(s, r, b, method, load, rate):
+    """Go on with the other method; the line says how stiff the last step was, and the rate, 1/s, of
+    what is stiffest."""
     r.method = method
     r.stiff, r.not_stiff = 0, 0
     r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
@@ -105,7 +106,7 @@ def change(s, r, b, method, load):
     r.explicit_rate = 0.0
     r.method_switches += 1
     kind = TO_IMPLICIT if method == IMPLICIT else TO_EXPLICIT
-    note_event(r, b, r.t, kind, s.con.shape[0], load / r.h if r.h > 0.0 else 0.0)
+    note_event(r, b, r.t, kind, s.con.shape[0], rate)
     b.events[r.event_rows - 1, EVENT_ANGLE] = load
 
 

@@ -13,7 +13,7 @@ from trsim.store.target import headed
 from trsim.studies.crew_door import content
 from trsim.studies.numbers import number
 from trsim.studies.runs import Member, Runs
-from trsim.sweep.study import study
+from trsim.sweeps.study import study
 
 ENDED = ("case", "status", "time [s]", "energy residual [1]", "wire least [N]", "reason")
 TIGHT = (  # (case, the same a hundred times tighter, numbers that are compared)

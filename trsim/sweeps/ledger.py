@@ -1,0 +1,135 @@
+"""What became of every case: one line of JSON for each end, in ledger.jsonl of the sweep's folder.
+
+A line is written when its case has ended, and none is ever changed: of several the last counts.
+With shards each writes lines of its own, ledger-1of3.jsonl.  A line cut short by a dead process
+is left out; the result file it was about is found by what the file says of itself.
+"""
+
+import json
+import os
+from collections import Counter
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from trsim import system
+from trsim.errors import FileError
+from trsim.statuses import ILL
+
+DIGEST = "case_sha256"  # attribute of /provenance in a result file
+AGAIN = ("crashed", "over time", "over memory", "no file")  # chance or limits: tried again
+REFUSED = "refused"  # no scenario, or no mechanism: there is no result file
+FAILED = (*AGAIN, REFUSED, *ILL)
+LARGEST = 2**62  # of a number in a line
+WORD = str | int | float | None  # of the summary in a line
+
+
+class Entry(NamedTuple):
+    """How a case ended."""
+
+    case: str
+    digest: str
+    engine: str
+    status: str  # of the result file, or one of FAILED
+    reason: str
+    attempts: int
+    content: str  # sha256 of the results; "" without a file
+    size: int  # bytes of the file
+    changed: int  # ns, when it was written
+    at: float  # s since 1970
+    wall: float  # s
+    summary: dict[str, Any]
+
+    @property
+    def failed(self) -> bool:
+        return self.status in FAILED
+
+
+KINDS: dict[str, Any] = {
+    name: {int: int, float: (int, float)}.get(kind, kind if isinstance(kind, type) else dict)
+    for name, kind in Entry.__annotations__.items()
+}
+
+
+class Ledger:
+    """The ledger of one process, open for adding lines."""
+
+    def __init__(self, folder: Path, shard: str = "") -> None:
+        self.path = folder / f"ledger{f'-{shard}' if shard else ''}.jsonl"
+        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | system.O_NONBLOCK
+        self.file = open(system.opened(self.path, flags), "ab")  # noqa: SIM115 - see close
+        if self.file.tell() and not _ends_a_line(self.path):
+            self.file.write(b"\n")
+
+    def add(self, entry: Entry) -> None:
+        self.file.write(json.dumps(entry._asdict()).encode() + b"\n")
+        self.file.flush()
+
+    def close(self) -> None:
+        with suppress(OSError):
+            os.fsync(self.file.fileno())
+        self.file.close()
+
+
+def _ends_a_line(path: Path) -> bool:
+    with path.open("rb") as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read(1) == b"\n"
+
+
+def entries(folder: Path) -> dict[str, Entry]:
+    """The last entry of every case, of all shards."""
+    found: dict[str, Entry] = {}
+    for path in filter(Path.is_file, sorted(folder.glob("ledger*.jsonl"))):
+        for line in _lines(path):
+            entry = entry_of(line)
+            if entry and (entry.case not in found or entry.at >= found[entry.case].at):
+                found[entry.case] = entry
+    return found
+
+
+def _lines(path: Path) -> list[bytes]:
+    try:
+        return path.read_bytes().splitlines()
+    except OSError as error:
+        raise FileError(f"{path}: {error.strerror}", file=str(path)) from None
+
+
+def entry_of(line: bytes) -> Entry | None:
+    """The entry in a line; None of a line that holds something else, whatever it is."""
+    try:
+        told = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(told, dict) or {*told} != {*Entry._fields}:
+        return None
+    if not all(isinstance(told[name], kind) for name, kind in KINDS.items()):
+        return None
+    if any(isinstance(value, bool) for value in told.values()):
+        return None
+    numbers = [value for value in told.values() if isinstance(value, int | float)]
+    words = told["summary"].values()
+    if not all(abs(n) < LARGEST for n in numbers) or not all(isinstance(w, WORD) for w in words):
+        return None
+    return Entry(**told)
+
+
+def stamp(file: Path) -> tuple[int, int]:
+    """Size and time of change of a file; zeros where there is none."""
+    try:
+        told = file.stat()
+    except OSError:
+        return 0, 0
+    return told.st_size, told.st_mtime_ns
+
+
+def in_a_line(reason: str) -> str:
+    """A message of several lines as one, without its excerpt."""
+    lines = [line for line in reason.splitlines() if not line.startswith("    ")]
+    return "  ".join(" ".join(line.split()) for line in lines if line.strip())
+
+
+def counts(statuses: Iterable[str]) -> dict[str, int]:
+    """How many cases there are of each status."""
+    return dict(Counter(statuses).most_common())

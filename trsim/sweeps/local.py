@@ -1,0 +1,73 @@
+"""Cases side by side on this machine, each slot with a process of its own."""
+
+import queue
+import threading
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from trsim.sweeps.slot import ANY, Limits, Slot
+from trsim.sweeps.worker import JOB
+
+LOOK = 0.2  # s between two looks for a signal
+Task = dict[str, Any]
+
+
+def run(
+    tasks: Iterable[Task], jobs: int, limits: Limits = ANY, first_alone: bool = False,
+    job: str = JOB,
+) -> Iterator[tuple[Task, dict[str, Any]]]:  # fmt: skip
+    """Each task with how it ended, as they end.
+
+    first_alone: the others wait for the first one, which compiles what all need.  Ended early, by
+    an exception or by closing the generator, it leaves no process behind.
+    """
+    waiting, turn = iter(tasks), threading.Lock()
+    ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    slots = [Slot(limits, job) for _ in range(jobs)]
+    stop, warm = threading.Event(), threading.Event()
+
+    def following() -> Task | None:
+        with turn:
+            return next(waiting, None)
+
+    def work(slot: Slot, leads: bool) -> None:
+        try:
+            if not leads:
+                warm.wait()
+            while not stop.is_set() and (task := following()) is not None:
+                ended.put((task, slot.run(task)))
+                warm.set()
+        except BaseException as error:  # told where the results are waited for
+            ended.put(error)
+        finally:
+            warm.set()
+            slot.close()
+            ended.put(None)
+
+    threads = [
+        threading.Thread(target=work, args=(slot, k == 0 or not first_alone), daemon=True)
+        for k, slot in enumerate(slots)
+    ]
+    for thread in threads:
+        thread.start()
+    at_work = len(threads)
+    try:
+        while at_work:
+            try:
+                found = ended.get(timeout=LOOK)
+            except queue.Empty:
+                continue
+            if isinstance(found, BaseException):
+                raise found
+            if found is None:
+                at_work -= 1
+            else:
+                yield found
+    finally:
+        stop.set()
+        warm.set()
+        if at_work:
+            for slot in slots:
+                slot.kill()
+        for thread in threads:
+            thread.join()

@@ -1,0 +1,88 @@
+"""A sweep as it stands in its folder, for whatever reads its runs."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from trsim.errors import FileError
+from trsim.store.read import Run, read
+from trsim.sweeps.folder import read_plan
+from trsim.sweeps.ledger import FAILED, Entry, entries, stamp
+from trsim.sweeps.needed import CHANGED, adopted, stands
+from trsim.sweeps.plan import named_file
+
+MISSING = "missing"
+
+
+@dataclass(frozen=True)
+class Case:
+    """One run of a sweep."""
+
+    name: str
+    file: Path
+    status: str  # of the run, MISSING, or why there is none (ledger.py)
+    reason: str
+    values: dict[str, float | str]  # key -> SI number, or word
+    entry: Entry | None
+
+    @property
+    def there(self) -> bool:
+        """Whether it has a result file, whatever its status."""
+        return self.entry is not None and bool(self.entry.content) and self.status != MISSING
+
+    @property
+    def changed(self) -> bool:
+        """Whether what has the name of its file is something else."""
+        return self.status == MISSING and self.reason == CHANGED
+
+    @property
+    def failed(self) -> bool:
+        return self.status in FAILED
+
+    def run(self) -> Run:
+        """Its results.  Raises FileError where there are none."""
+        if not self.there:
+            told = f": {self.reason}" if self.reason else ""
+            what = f"{self.file}: the case has no result, {self.status}{told}"
+            hint = "`trsim sweep` again runs what is missing."
+            raise FileError(what, hint, file=str(self.file))
+        return read(self.file)
+
+
+@dataclass(frozen=True)
+class Study:
+    """All cases of a sweep, in the order of its plan."""
+
+    folder: Path
+    source: str  # the scenario
+    keys: tuple[str, ...]  # that vary by themselves; "case" first where there are named cases
+    units: dict[str, str]  # key -> SI unit, or "-"
+    written: dict[str, str]  # key -> unit as written in the scenario, where there is one
+    method: str
+    samples: int
+    seed: int
+    cases: tuple[Case, ...]
+
+    @cached_property
+    def named(self) -> dict[str, Case]:
+        return {case.name: case for case in self.cases}
+
+
+def study(folder: str | Path) -> Study:
+    """The sweep in a folder.  Raises FileError where there is none that can be read."""
+    folder = Path(folder)
+    told, known = read_plan(folder), entries(folder)
+    cases = []
+    for one in told["cases"]:
+        entry, file = known.get(one["name"]), named_file(folder, one["name"])
+        if entry is not None and entry.digest != one["digest"]:
+            entry = None
+        if entry is None and file.is_file():  # its line was lost; the file says what it is
+            entry = adopted(one["name"], one["digest"], file, told["engine"])
+        status, reason = (entry.status, entry.reason) if entry else (MISSING, "")
+        if entry and entry.content and not stands(entry, file, told["engine"]):
+            status, reason = MISSING, CHANGED if stamp(file)[0] else ""
+        cases.append(Case(one["name"], file, status, reason, one["values"], entry))
+    same = {name: told[name] for name in ("source", "units", "method", "samples", "seed")}
+    keys, written = tuple(told["keys"]), told.get("written", {})
+    return Study(folder=folder, keys=keys, written=written, cases=tuple(cases), **same)
