@@ -175,11 +175,17 @@ def start_lines(start: dict[str, Any]) -> list[str]:
     moved += [f"{p['turn_body']} by {p['turn']:.2g} rad"] if p["turn"] else []
     slipped = [f"{p['slip_body']} by {p['slip']:.2g} m/s"] if p["slip"] else []
     slipped += [f"{p['spin_body']} by {p['spin']:.2g} rad/s"] if p["spin"] else []
+    if slipped or not p["velocity_before"]:
+        velocities = (
+            f"velocities off by {p['velocity_before']:.1e} as given{of['velocity_row']}, "
+            f"{p['velocity_after']:.1e} at the start; given ones changed most: {words(slipped)}"
+        )
+    else:  # nobody gave any, and drives move
+        velocities = f"velocities follow from the drives, off by {p['velocity_after']:.1e}"
     return [
         f"  start       positions open by {p['position_before']:.1e} as drawn{of['position_row']}, "
         f"{p['position_after']:.1e} at the start; moved most: {words(moved)}",
-        f"              velocities off by {p['velocity_before']:.1e} as given{of['velocity_row']}, "
-        f"{p['velocity_after']:.1e} at the start; given ones changed most: {words(slipped)}",
+        f"              {velocities}",
         f"              {start['force_residual']:.1e} N out of balance, "
         f"in touch: {words(start['closed_contacts'])}",
     ]
