@@ -56,7 +56,11 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
         yield f"{known}, and no tolerance changes that: the digits of a number end there"
         return
     finer = ADDS * tolerance * ALLOWED * tolerance * largest / off
-    at = f" at about {w / (2.0 * pi):.2g} Hz" if w > 0.0 else ""
+    what = f"something vibrates{f' at about {w / (2.0 * pi):.2g} Hz' if w > 0.0 else ''}"
+    rubs = [i for i in mechanism.instances if i.row.rubs]
+    if rubs:
+        entry = f"{rubs[0].section}.{rubs[0].name}"
+        what = f"the friction of {entry} turns round within steps, or {what}"
     remedy = (
         f"`tolerance: {finer:.0e}` holds them"
         if finer >= FINEST
@@ -64,6 +68,6 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
         "(`stiffness`, `compliance`, `damping`), or run it by itself"
     )
     yield (
-        f"{known}, and by more over many: something vibrates{at}, too little for a tolerance of "
+        f"{known}, and by more over many: {what}, too little for a tolerance of "
         f"{tolerance:g} to follow, but its accelerations are not small; {remedy}"
     )
