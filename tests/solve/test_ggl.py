@@ -261,6 +261,22 @@ def test_every_state_leads_to_the_same_end(sets, monkeypatch):
         same([*cut[: k + 1], *rest], end)
 
 
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_a_bar_falls_as_a_whole(planar):
+    r = run(f"""
+planar: {planar}
+bodies:
+  bar: {{type: ancf_cable, start: [0, 0], end: [1, 0], elements: 2, section: {{diameter: 20 mm}},
+        youngs_modulus: 10 MPa, density: 1000 kg/m^3}}
+gravity: [3, -9.81, 0]
+solver: {{end: 10 ms, tolerance: 1e-6, max_steps: 200}}
+output: {{every: 10 ms}}
+""", *GGL)
+    for node, x in enumerate((0.0, 0.5, 1.0)):
+        place = [x + 3 * 5e-5, -9.81 * 5e-5, 0.0]
+        assert r[f"bar.node{node}.position"][-1] == pytest.approx(place, abs=1e-9)
+
+
 # --- large models --------------------------------------------------------------------------------
 
 
