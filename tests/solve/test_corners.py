@@ -170,3 +170,22 @@ def test_a_step_onto_another_piece_is_cut_to_what_that_does(monkeypatch, jump):
         least *= 0.25
     assert r.h == least
     assert (s.tab.tolist(), b.before.tolist()) == ([9.0, 5.0], [4.0])
+
+
+@pytest.mark.parametrize("fixed, told", [(0.0, sensed.UNCERTAIN), (1.0, sensed.NONE)])
+def test_a_search_that_gives_up_asks_for_a_shorter_step_where_there_is_one(
+    monkeypatch, fixed, told
+):
+    s = SimpleNamespace(sensed=np.zeros((1, 3), int), S=np.zeros((1, 2)))
+    b = SimpleNamespace(t=0.0, h=1.0, shown=np.zeros((1, 2)), seen=np.zeros((1, 4)))
+    r = SimpleNamespace(unproved=0)
+    looks = []
+    for name, stand_in in {
+        "LOOKS": 3, "spread": lambda *_: (0.0, 0.0), "hidden_depth": lambda *_: 0.0,
+        "see": lambda *_: None, "limit": lambda *_: None,
+        "show": lambda s, r, b, high: looks.append(high), "verdict": lambda *_: sensed.UNSURE,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(sensed, name, stand_in)
+    setting = SimpleNamespace(fixed_step=fixed, t_end=1.0)
+    assert sensed.first_corner.python(s, r, b, setting) == told
+    assert r.unproved == 1 and looks == [1.0, 0.5, 0.25]

@@ -2,6 +2,7 @@
 with rows far apart and close together."""
 
 from math import cos, hypot, pi, sin, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from scipy.interpolate import Akima1DInterpolator
 from trsim.analyse.trajectory import changed, marched
 from trsim.assemble.assemble import assemble
 from trsim.scenario.load import loads
+from trsim.solve.march import peaks
 
 from ..runs import run
 from ..truth.trial import made
@@ -431,3 +433,29 @@ def test_rows_stay_on_their_branch_where_branches_meet(rows):
     (rate,) = [1 + c.start for c in mechanism.columns if c.name == "angle.rate"]
     assert told[:, rate].max() < -7.5
     assert outcome.peaks[rate - 1, 0] < -7.5
+
+
+@pytest.mark.parametrize("doubt, looks", [(1e-9, 0), (0.5, 1)])
+def test_what_is_not_sure_is_looked_at(monkeypatch, doubt, looks):
+    """A polynomial is taken at its word where what it may lack is little of what may be missed."""
+    b = SimpleNamespace(
+        node=np.array([[1.0, 0.0]]), n_found=0, found=np.zeros(9), firm=np.ones(2), astray=0
+    )
+    r, seen = SimpleNamespace(peak=np.zeros((5, 1))), []
+
+    def look(s, r, b, setting, method, where):
+        seen.append(where[1])
+        b.astray = 1  # no more than one
+
+    def extreme(r, o, place, value, firm):
+        r.peak[:2, o] = value, place
+
+    for name, stand_in in {
+        "through": lambda *_: peaks.POINTS, "top": lambda *_: (0.4, 2.0 + doubt), "look": look,
+        "known_place": lambda *_: False, "settled": lambda *_: True, "extreme": extreme,
+        "polynomial": lambda *_: 2.0,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(peaks, name, stand_in)
+    peaks.search.python(SimpleNamespace(sought=[0]), r, b, None, None, (0, 0, 1.0, 1e-3))
+    assert seen == [0.4] * looks
+    assert r.peak[:2, 0].tolist() == ([0.0, 0.0] if looks else [2.0, 0.4])
