@@ -192,9 +192,13 @@ def test_what_stays_in_the_plane_is_planar(name):
 
 def test_a_plane_at_a_height_is_one():
     """Nothing turns the ground: what pulls on it beside its origin counts for nothing."""
-    high = HINGED.replace("0, 0]", "0, 0.4]") + DOWN + (
-        "forces: {s: {type: spring_damper, bodies: [ground, rod], stiffness: 30, "
-        "points: [[1, 1, 0.4], [1, 0, 0.4]]}}"
+    high = (
+        HINGED.replace("0, 0]", "0, 0.4]")
+        + DOWN
+        + (
+            "forces: {s: {type: spring_damper, bodies: [ground, rod], stiffness: 30, "
+            "points: [[1, 1, 0.4], [1, 0, 0.4]]}}"
+        )
     )
     m = built(high + END)
     assert m.planar and not m.spatial_because

@@ -184,6 +184,15 @@ def test_fan_out(here):
     assert refusal("c.yaml").what == f"more than {MOST} files"
 
 
+def test_how_many_files_cases_may_extend(here):
+    """1000, with the one they stand in."""
+    for more in (999, 1000):
+        files(here, a="x: 1", top=f"cases: {{one: {{extends: [{', '.join(['a.yaml'] * more)}]}}}}")
+        if more < 1000:
+            assert data("top.yaml")["cases"]["one"] == {"x": 1}
+    assert refusal("top.yaml").what == "more than 1000 files"
+
+
 def test_a_fault_in_an_extended_file_is_shown_there(here):
     files(here, base="a: 1\na: 2", top="extends: base.yaml")
     assert refusal("top.yaml").show().startswith("base.yaml:2:1: key 'a' stands here twice")

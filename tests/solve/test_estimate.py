@@ -73,9 +73,12 @@ def test_estimate_of_a_decay(h, again, formulation):
         assert abs(once) > 0.8 * v > 20.0 * abs(twice)
 
 
-DRIVEN = DAMPED.replace("velocity: [1, 0]", "velocity: [3, 0]") + """
+DRIVEN = (
+    DAMPED.replace("velocity: [1, 0]", "velocity: [3, 0]")
+    + """
 drives: {push: {joint: slide, velocity: 3 + (200*t)**3, compliance: {stiffness: 10}}}
 """
+)
 
 
 @pytest.mark.parametrize("formulation", METHODS)

@@ -265,7 +265,8 @@ def test_every_state_leads_to_the_same_end(sets, monkeypatch):
 
 @pytest.mark.parametrize("planar", ["true", "false"])
 def test_a_bar_falls_as_a_whole_beside_a_weight_on_a_pivot(planar):
-    r = run(f"""
+    r = run(
+        f"""
 planar: {planar}
 bodies:
   weight: {{mass: 2, inertia: [1, 1, 1], at: [0.5, 0]}}
@@ -276,7 +277,9 @@ drives: {{turn: {{joint: pivot, position: 100*t}}}}
 gravity: [3, -9.81, 0]
 solver: {{end: 10 ms, tolerance: 1e-6, max_steps: 200}}
 output: {{every: 10 ms}}
-""", *GGL)
+""",
+        *GGL,
+    )
     for node, x in enumerate((0.0, 0.5, 1.0)):
         place = [x + 3 * 5e-5, -9.81 * 5e-5, 0.0]
         assert r[f"bar.node{node}.position"][-1] == pytest.approx(place, abs=1e-9)
@@ -287,14 +290,17 @@ output: {{every: 10 ms}}
 
 def test_multipliers_are_found_with_the_stages():
     """A swing takes some 200 steps, thousands where Newton's method does not find lam and mu."""
-    r = run("""
+    r = run(
+        """
 planar: true
 bodies: {bob: {mass: 2, inertia: 0.01, at: [0.5, 0]}}
 joints: {pivot: {type: revolute, bodies: [ground, bob], at: [0, 0]}}
 gravity: [0, -9.81]
 solver: {end: 0.5, tolerance: 1e-8, max_steps: 1000}
 output: {every: 0.1}
-""", *GGL)
+""",
+        *GGL,
+    )
     kinetic = 0.5 * (2 * 0.5**2 + 0.01) * r["bob.angular_velocity"][:, 2] ** 2
     assert kinetic == pytest.approx(-2 * 9.81 * r["bob.position"][:, 1], abs=1e-6)
 

@@ -459,3 +459,38 @@ def test_what_is_not_sure_is_looked_at(monkeypatch, doubt, looks):
     peaks.search.python(SimpleNamespace(sought=[0]), r, b, None, None, (0, 0, 1.0, 1e-3))
     assert seen == [0.4] * looks
     assert r.peak[:2, 0].tolist() == ([0.0, 0.0] if looks else [2.0, 0.4])
+
+
+@pytest.mark.parametrize("samples", [2, 9])
+@pytest.mark.parametrize("shows", [False, True])
+def test_a_dense_output_is_built_where_a_guess_of_the_middle_asks_for_it(
+    monkeypatch, samples, shows
+):
+    """Guesses are no extremes themselves: where they show one what is there is looked at."""
+    s = SimpleNamespace(sought=[0], kin=[0], lever=[1.0], least=[-np.inf])
+    r = SimpleNamespace(
+        sample=np.zeros((2, 1)), sampled=np.array([1.0, 0.5]), newest=0, n_samples=samples, steps=1,
+        peak=np.zeros((5, 1)), largest=[1.0], faint=[0.0],
+    )  # fmt: skip
+    b = SimpleNamespace(
+        n_found=0, astray=0, bound=np.array([[0.0], [1.0]]), inside=np.zeros((9, 1)), t=1.0, laid=0
+    )
+    done = []
+
+    def guess(s, r, b, method, ahead, inner):
+        b.n_found, b.inside[0, 0] = 1, 2.0 * shows
+
+    def look_within(s, r, b, setting, method, where):
+        done.append(("built", b.n_found))
+        b.astray = 1
+
+    for name, stand_in in {
+        "older": lambda r, k: k, "ready": lambda *_: False, "length": lambda *_: 1.0,
+        "bounds": lambda *_: None, "reached": lambda *_: (True, True), "guess": guess,
+        "guessed": lambda s, r, b, *_: (b.n_found > 0 and b.inside[0, 0] > 0, False),
+        "look_within": look_within, "search": lambda *_: None,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(peaks, name, stand_in)
+    setting = SimpleNamespace(missed=0.01, t_end=2.0)
+    peaks.between.python(s, r, b, setting, None, 0)
+    assert done == [("built", 0)] * shows

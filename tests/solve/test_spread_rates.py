@@ -121,7 +121,9 @@ def test_nothing_goes_beyond_its_bounds(planar, seed):
 def test_a_slope_turns_the_faster_the_shorter_it_may_be(length):
     """A node's slope of length 1 at the end, whose ends move apart at 0.2 1/s: it may have been
     shorter by that times the time, and 0.2 over its length is what it turns by at most."""
-    s = SimpleNamespace(d=6, n_r=1, n_q=0, v_node=0, d_node=6, G=np.array([[0.0] * 3, [0.6, 0, 0.8]]))
+    s = SimpleNamespace(
+        d=6, n_r=1, n_q=0, v_node=0, d_node=6, G=np.array([[0.0] * 3, [0.6, 0, 0.8]])
+    )
     r = SimpleNamespace(degree=3, y=np.array([0, 0, 0, 0.0, 0.2, 0.0]))
     b = SimpleNamespace(curve=np.zeros((9, 14)))
     most, second, third = plain.plain(turned.python)(s, r, b, 1, 0, length)
