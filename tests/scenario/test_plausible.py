@@ -7,7 +7,10 @@ from trsim.scenario.plausible import contacts, modulus
 
 def test_pins_in_bearings():
     """With a law, a radius and a clearance below it: of others nothing is said here."""
-    laws = {"pin": SimpleNamespace(bearing_radius=0.01), "pad": SimpleNamespace(bearing_radius=None)}
+    laws = {
+        "pin": SimpleNamespace(bearing_radius=0.01),
+        "pad": SimpleNamespace(bearing_radius=None),
+    }
     joints = {
         "good": SimpleNamespace(contact="pin", clearance=5e-4),
         "tight": SimpleNamespace(contact="pin", clearance=0.0),

@@ -260,6 +260,15 @@ def test_on_a_cam():
     assert found.channels[column.start] == pytest.approx(0.5 * 9.81 * 0.015, abs=1e-9)
 
 
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_turns_are_those_since_the_drawing(planar):
+    """Whatever axes the body was drawn with."""
+    text = SPRUNG.format(planar=planar, bodies="[ground, rod]")
+    found = rest(text.replace("at: [0.2, 0]}", "at: [0.2, 0], angle: 0.5}"))
+    q = brentq(lambda x: sprung(x)[0], -1, 1)
+    assert found.turns["rod"] == pytest.approx([0, 0, q], abs=1e-9)
+
+
 @pytest.mark.parametrize("size", [0.01, 1.0, 100.0])
 def test_the_nearest_balance_is_found_at_any_size(size):
     """Of many that a wave of force has, 2 cos(x/w): at x = pi/2 w, from where x is 0."""
