@@ -13,6 +13,7 @@ from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import scene
 from trsim.laws.tables import akima, cubics
 from trsim.solve.diagnose.doubts import of_books
+from trsim.solve.methods import scipy_ivp
 from trsim.solve.methods.scipy_ivp import books
 
 from ..runs import built, run
@@ -230,3 +231,19 @@ forces: {{pull: {{type: applied_load, body: block, direction: [1, 0, 0], force: 
     works = np.arange(len(y))[books(s)]
     assert len(works) == N_BOOK and len(y) - works[-1] == 2  # the way of the drive is the last
     assert yd[works].tolist() == [0.0, 21.0, 0.0, 0.0, 0.0]
+
+
+def test_scipy_begins_with_the_error_allowed(monkeypatch):
+    """No factor of accelerations is known before the first step."""
+    asked, restarted = [], scipy_ivp.restarted
+
+    def noted(run, finer, *most):
+        asked.append(finer)
+        return restarted(run, finer, *most)
+
+    monkeypatch.setattr(scipy_ivp, "restarted", noted)
+    run(f"{FLYING}solver: {{end: 1 ms, method: 'scipy:RK45'}}")
+    assert asked[0] == 1.0
+
+
+FLYING = "bodies: {ball: {mass: 1, inertia: 1, velocity: [1, 2]}}\n"
