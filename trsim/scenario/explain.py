@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 from trsim import elements
@@ -25,6 +26,12 @@ LAWS = ("trsim.scenario.contact_law", "trsim.scenario.event", "trsim.scenario.ph
 Page = dict[str, Any]
 
 
+@cache
+def definitions() -> dict[str, Any]:
+    """The schema of a scenario file; nobody writes into it."""
+    return schema()
+
+
 def explained(word: str | None = None) -> dict[str, list[Page]]:
     """All that a word names; without a word, all there is.
 
@@ -32,7 +39,7 @@ def explained(word: str | None = None) -> dict[str, list[Page]]:
     of a mapping come with it.  What a key may be, `akima`, and what is recorded, `reaction`, are
     words too, and so are units and topics.  Raises UsageError for a word nobody knows.
     """
-    of = schema()["$defs"]
+    of = definitions()["$defs"]
     kinds = [_element(name, section, of) for name, section in elements.ELEMENTS.items()]
     sections = [_section(name, rule, of) for name, rule in of["Scenario"]["properties"].items()]
     keys = [key for page in (*kinds, *sections) for key in page["keys"]]
