@@ -5,7 +5,7 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo paper door tolerances gallery test release-check coverage portable elsewhere lint bench stress truth mutants wheel clean
+.PHONY: demo paper door tolerances gallery docs docs-check test release-check coverage portable elsewhere lint bench stress truth mutants wheel clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -33,6 +33,15 @@ tolerances: .venv/installed
 # pictures and page of docs/gallery.md, and the pictures of docs/first_mechanism.md
 gallery: .venv/developer
 	$(BIN)/python -m benchmarks.gallery
+
+# tables and figures of README and docs that are stale; goes on where it was ended. What measures times,
+# takes hours or is copied by hand is left unless named: make docs NAMES="turns rods"
+docs: .venv/developer
+	$(BIN)/python -m benchmarks.docs $(NAMES)
+
+# names what is stale, and fails if anything is
+docs-check: .venv/developer
+	$(BIN)/python -m benchmarks.docs --check
 
 test: .venv/developer lint
 	$(PYTEST)

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.docs.made import MADE
+from benchmarks.docs.marks import END, opening
 from benchmarks.measure import ROOT
 from benchmarks.stress.cells import METHODS, SYSTEMS
 from benchmarks.stress.judge import CONVERGED, REFUSED, SAID_SO, UNJUDGED, WRONG
@@ -65,7 +67,7 @@ def write(cells: list[Cell], commit: str) -> None:
         speed=counted(cells, "speed", levels(cells, "speed")),
         friction=counted(cells, "friction", levels(cells, "friction")),
         restitution=counted(cells, "restitution", levels(cells, "restitution")),
-        reasons=reasons(cells), wrong="\n".join(
+        mark=marker(cells), end=END, reasons=reasons(cells), wrong="\n".join(
             f"* {c['case']}, {c['method']} at {c['setting']:g}: peaks off by "
             f"{100 * c['peak_error']:.2g} %, path by {c['path_error']:.2g}, "
             f"horizon {c['horizon']:.2f} of the run"
@@ -73,6 +75,12 @@ def write(cells: list[Cell], commit: str) -> None:
     )  # fmt: skip
     DOC.write_text(text)
     draw(cells, MAP)
+
+
+def marker(cells: list[Cell]) -> str:
+    """The first marker (benchmarks/docs); no digest where cells are of different sources."""
+    made = {cell.get("from", "") for cell in cells}
+    return opening("stress", made.pop() if len(made) == 1 and "" not in made else "0" * 12)
 
 
 def draw(cells: list[Cell], path: Path) -> None:
@@ -130,6 +138,8 @@ must agree to 2 %.
 * **unjudged**: done, but no other method got through at the tighter tolerance
 * **WRONG**: done without a word, and not within 2 %
 
+{mark}
+
 {counts}.  Version {commit}.  Errors of the peaks of what was judged: median {median:.1e}, 95 %
 below {most:.1e}, worst {worst:.1e}; {chaotic:.0%} of these runs part from their twin before their
 end.
@@ -157,4 +167,6 @@ end.
 ## Wrong
 
 {wrong}
+
+{end}
 """
