@@ -29,10 +29,10 @@ def main() -> None:
             scenario = load(file, [f"solver.tolerance={tolerance}"])
             result = run(scenario, assemble(scenario))
             numbers = result.outcome.statistics
-            left = np.abs(result.channel("energy.residual")).max()
+            left = f"{np.abs(result.channel('energy.residual')).max():.0e}".replace("e-0", "e-")
             cells = [name if tolerance == tolerances[0] else "", tolerance,
                      *(f"{numbers[key]:,}".replace(",", " ") for key in ("steps", "evaluations")),
-                     *(peak(result, pin, name) for pin in "AB"), f"{left:.0e}".replace("e-0", "e-")]  # fmt: skip
+                     *(peak(result, pin, name) for pin in "AB"), left]  # fmt: skip
             print(f"| {' | '.join(cells)} |".replace("|  ", "| "), flush=True)
 
 

@@ -7,7 +7,6 @@ unless it is named.
 
 import argparse
 import shlex
-import subprocess
 import sys
 
 from benchmarks.docs import marks
@@ -39,8 +38,7 @@ def make(name: str) -> None:
     words = shlex.split(entry.command)
     if words[0] == "python":
         words[0] = sys.executable
-    done = subprocess.run(words, cwd=ROOT, stdout=subprocess.PIPE, check=True)
-    printed = done.stdout.decode()
+    printed = marks.printed(words).decode()
     KEPT.mkdir(parents=True, exist_ok=True)
     (KEPT / f"{name}.txt").write_text(printed, encoding="utf-8", newline="\n")
     if entry.way == "copied":

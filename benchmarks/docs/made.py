@@ -116,6 +116,12 @@ MADE: dict[str, Made] = {
 
 # heads of tables that are not measured: words, keys, options, units
 LISTS: dict[str, tuple[str, ...]] = {
+    "theory.md": ("| law | chi |",),
+    "why_did_my_run_fail.md": (
+        "| code | what it means | what to do |",
+        "| it says | why | what to do |",
+        "| it says | what to do |",
+    ),
     "README.md": (
         "| read | for |",
         "| YAML | kernel | |",

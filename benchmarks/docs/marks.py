@@ -24,8 +24,8 @@ from benchmarks.docs.made import MADE
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 MARK = re.compile(
-    r"^ *<!-- made: (?P<name>[\w/]+)(:(?P<table>\d+))?; by: (?P<command>[^;]+); from: (?P<digest>\w+)"
-    r"(; at: (?P<commit>\w+))? -->$"
+    r"^ *<!-- made: (?P<name>[\w/]+)(:(?P<table>\d+))?; by: (?P<command>[^;]+)"
+    r"; from: (?P<digest>\w+)(; at: (?P<commit>\w+))? -->$"
 )
 END = "<!-- end -->"
 READ = (".py", ".yaml", ".csv", ".toml")  # what of a folder is a source
@@ -111,17 +111,20 @@ def digest(of: tuple[str, ...], root: Path = ROOT) -> str:
 def digest_at(of: tuple[str, ...], commit: str) -> str:
     """The same of the tree of a commit."""
     git = ["git", "-C", str(ROOT)]
-    listed = subprocess.run([*git, "ls-tree", "-r", "--name-only", commit], check=True,
-                            capture_output=True).stdout.decode().splitlines()  # fmt: skip
+    listed = printed([*git, "ls-tree", "-r", "--name-only", commit]).decode().splitlines()
     there = [name for name in of if any(f"{one}/".startswith(f"{name}/") for one in listed)]
     if not there:
         return digest(())
-    packed = subprocess.run([*git, "archive", commit, "--", *there], check=True,
-                            capture_output=True).stdout  # fmt: skip
+    packed = printed([*git, "archive", commit, "--", *there])
     with tempfile.TemporaryDirectory() as folder:
         with tarfile.open(fileobj=io.BytesIO(packed)) as tar:
             tar.extractall(folder, filter="data")
         return digest(of, Path(folder))
+
+
+def printed(command: list[str]) -> bytes:
+    """What a command says on its standard output."""
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, cwd=ROOT).stdout  # noqa: S603
 
 
 def stale(one: Marked) -> str:

@@ -49,7 +49,8 @@ def _body(every: dict[str, list[Any]]) -> Iterator[str]:
     yield from (f"| `{one['written']}` | {_cell(one['meaning'])} |" for one in every["functions"])
     yield from ("\n## Units", "\n| unit | in SI | of |", "|---|---|---|")
     for one in every["units"]:
-        yield f"| `{one['word']}` | {one['factor']:.9g} {_cell(one['unit'])} | {one['kind'] or ''} |"
+        size = f"{one['factor']:.9g} {_cell(one['unit'])}"
+        yield f"| `{one['word']}` | {size} | {one['kind'] or ''} |"
 
 
 def _entry(one: dict[str, Any], about: str) -> Iterator[str]:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.docs.made import MADE
 from benchmarks.docs.marks import END, opening
 from benchmarks.measure import ROOT
 from benchmarks.stress.cells import METHODS, SYSTEMS
