@@ -119,7 +119,7 @@ def draw(cells: list[Cell], path: Path) -> None:
 
 DOC_TEXT = """# Stress: contact far from comfortable
 
-`make stress` runs {n} cells: {cases} cases, each by five methods; it goes on where it was ended.
+`make stress` runs {n} cells: {cases} cases, each by five methods; rerun it to resume.
 Cases: clearance 1 µm to 5 mm, restitution 0 to 1, friction 0 to 1, speed 0.01 to 10 m/s, contact
 stiffness 1/1000 to 1000 times that of steel, every level equally often in each of five mechanisms:
 the reverser from before the touch of its lug with clearance at one or two pins, the same with
