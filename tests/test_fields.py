@@ -200,7 +200,7 @@ def problem(**given):
         ({"force": {"table": 1}}, ("table",), "must be two or more rows [x, y], got 1"),
         ({"force": {"table": [[0, 1]]}}, ("table",), "must be two or more rows [x, y]"),
         ({"force": {"table": [[0, 1], [0, 2]]}}, ("table", 1), "x must rise, got 0 after 0"),
-        ({"force": {"table": [[0, 1], [1, "2 m"]]}}, ("table", 1), "wrong unit: 'm'"),
+        ({"force": {"table": [[0, 1], [1, "2 m"]]}}, ("table", 1, 1), "wrong unit: 'm'"),
         ({"force": {"table": [[0, 1], [1]]}}, ("table", 1), "a row is [x, y], got a list of 1"),
         ({"force": {"table": [[0, 1], [1, None]]}}, ("table", 1), "a row is two numbers"),
         ({"force": {"table": [[0, 1], [1, 2]], "of": 3}}, ("of",), "must be t or the name"),

@@ -191,7 +191,7 @@ def periodic(*sets):
 @pytest.mark.parametrize("tolerance", ["1e-6", "1e-7"])
 def test_slider_crank_of_period_two(tolerance):
     points, apart = periodic(f"solver.tolerance={tolerance}")
-    assert apart < 1e-11
+    assert apart < 1e-10  # what steps alone leave, see the next test; the two points are 2e-5 apart
     assert points[-2] == pytest.approx([311.15e-6, 18.92e-6], abs=1e-8)
     assert points[-1] == pytest.approx([312.03e-6, -4.81e-6], abs=1e-8)
 

@@ -251,6 +251,8 @@ INTERRUPTED = """
 import signal, threading, time, trsim
 from pathlib import Path
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also where a shell had it ignored
+
 def end():
     while not Path("long.h5.part").exists() or Path("long.h5.part").stat().st_size < 200_000:
         time.sleep(0.02)

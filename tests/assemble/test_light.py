@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from trsim.assemble.equations import kinetic
 from trsim.assemble.tables import masses_and_arms
+from trsim.elements.scene import workspace
 from trsim.errors import TrsimError
 from trsim.scenario.load import loads
 
@@ -57,6 +59,34 @@ def test_what_is_measured_beside_baumgartes_feedback_is_that_of_no_mass(beta):
     size = np.abs(link["b.reaction"]).max()
     np.testing.assert_allclose(own["c.reaction"], own["b.reaction"], atol=1e-11 * size)
     np.testing.assert_allclose(own["c.reaction"], link["b.reaction"], atol=1e-5 * size)
+
+
+BESIDE_EACH_OTHER = """
+planar: {}
+bodies:
+  arm: {{mass: 2, inertia: [0.2, 0.1, 0.3], at: [0.5, 0, 0]}}
+  bob: {{mass: 0.7, inertia: [0, 0, 0], at: [1, 0, 0]}}
+  tip: {{mass: 0, inertia: [0.01, 0.02, 0.03], at: [2, 0, 0]}}
+joints:
+  first: {{type: fixed, bodies: [arm, bob], at: [1, 0, 0]}}
+  second: {{type: fixed, bodies: [arm, tip], at: [2, 0, 0]}}
+"""
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_kinetic_energy_is_that_of_what_there_is(planar):
+    """Each light body without what it is solved with, whatever the others lack."""
+    mechanism = built(BESIDE_EACH_OTHER.format(str(planar).lower()))
+    model, rng = mechanism.model, np.random.default_rng(2)
+    assert len(model.light) == 2
+    y = np.concatenate([mechanism.y0[: model.n_q], rng.normal(size=model.n_v + model.n_z)])
+    v = y[model.n_q : model.n_q + model.n_v].reshape(3, -1)
+    mass = np.diag([2.0, 2.0, 0.3] if planar else [2.0] * 3 + [0.2, 0.1, 0.3])
+    bob = np.diag([0.7, 0.7, 0.0] if planar else [0.7] * 3 + [0.0] * 3)
+    tip = np.diag([0.0, 0.0, 0.03] if planar else [0.0] * 3 + [0.01, 0.02, 0.03])
+    order = [mechanism.frames[name] - 1 for name in ("arm", "bob", "tip")]
+    wanted = sum(0.5 * v[f] @ M @ v[f] for f, M in zip(order, (mass, bob, tip), strict=True))
+    assert kinetic(workspace(model), y) == pytest.approx(wanted, rel=1e-9)
 
 
 def test_the_energy_book_has_no_mass_that_is_not_there():

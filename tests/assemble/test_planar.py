@@ -190,6 +190,20 @@ def test_what_stays_in_the_plane_is_planar(name):
     assert compared(IN[name]).mechanism.planar
 
 
+def test_a_plane_at_a_height_is_one():
+    """Nothing turns the ground: what pulls on it beside its origin counts for nothing."""
+    high = (
+        HINGED.replace("0, 0]", "0, 0.4]")
+        + DOWN
+        + (
+            "forces: {s: {type: spring_damper, bodies: [ground, rod], stiffness: 30, "
+            "points: [[1, 1, 0.4], [1, 0, 0.4]]}}"
+        )
+    )
+    m = built(high + END)
+    assert m.planar and not m.spatial_because
+
+
 def test_a_rod_swung_out_of_the_plane_by_hand():
     """I a = T about y, Ixx and Izz spin along: torque (Iyy + m r^2) a, pull m r w^2."""
     r = run(OUT["a rigid drive about y"] + END)

@@ -203,6 +203,12 @@ def test_planarity_is_seen():
     assert not built(out).planar
 
 
+def test_a_mount_beside_the_plane_is_named():
+    beside = PLANE.format("null").replace("at: [0.1, 0]", "at: [0.1, 0, 0.02]")
+    (why,) = built(beside).spatial_because
+    assert why == "forces.mount acts beside the plane of a centre of mass"
+
+
 def test_a_rail_lets_slide():
     """Along the rail nothing acts, across it the weight hangs on the spring."""
     r = run("""

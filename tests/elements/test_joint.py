@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.assemble.reduce import jacobian
+from trsim.elements import load
 from trsim.elements.scene import scene
 
 from ..runs import built, energy_error, run
@@ -40,6 +41,9 @@ IN_THE_PLANE = {
     "link": 2,
     "planar": 3,
 }
+# what a joint of points and turns is drawn as; other joints say it themselves
+DRAWN = {"spherical": "ball", "universal": "cross", "revolute": "pin", "fixed": "weld",
+         "inline": "bead", "cylindrical": "sleeve", "prismatic": "slide"}  # fmt: skip
 TURNED = """
 bodies:
   left: {mass: 2, inertia: [0.02, 0.03, 0.04], at: [300.1, -0.2, 0.3], angle: 2.7}
@@ -49,6 +53,11 @@ bodies:
 
 def test_every_joint_is_in_the_table():
     assert {*IDEAL} == {*FREE}
+
+
+@pytest.mark.parametrize("word", DRAWN)
+def test_pictures(word):
+    assert load(word).picture == DRAWN[word]
 
 
 @pytest.mark.parametrize("word", IDEAL)

@@ -117,6 +117,22 @@ output: {every: 1 ms}
         built(bar.replace("GRAVITY", "-9.81").replace("at: [1, 0, 0]", "at: [0.9, 0]"))
 
 
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_a_node_of_a_falling_bar_accelerates_as_all_of_it(planar):
+    r = run(f"""
+planar: {planar}
+points: {{tip: {{body: bar, at: [1, 0, 0]}}}}
+bodies:
+  bar: {{type: ancf_cable, start: [0, 0], end: [1, 0], elements: 2, section: {{diameter: 20 mm}},
+        youngs_modulus: 10 MPa, density: 1000 kg/m^3}}
+gravity: [3, -9.81, {0 if planar == "true" else 2}]
+solver: {{end: 2 ms, tolerance: 1e-6}}
+output: {{every: 1 ms}}
+""")
+    falls = [3.0, -9.81, 0.0 if planar == "true" else 2.0]
+    assert r["tip.acceleration"] == pytest.approx(np.tile(falls, (len(r.t), 1)), abs=1e-6)
+
+
 # --- who names it ----------------------------------------------------------------------------
 
 PLACES = """

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trsim.elements.inertia import written as as_numbers
 from trsim.elements.rigid_body import RigidBody
 from trsim.errors import TrsimError
 from trsim.scenario.load import loads
@@ -13,6 +14,14 @@ from ..runs import run
 
 def tensor(inertia):
     return RigidBody(mass=1.0, inertia=inertia).tensor
+
+
+@pytest.mark.parametrize("moments", [(1.0, 2.0, 3.0), (3.0, 1.0, 2.0), (2.0, 3.0, 1.0)])
+def test_products_that_are_rounding_are_nothing(moments):
+    """Of a plate too, whose largest moment is the sum of the others."""
+    other = 1e-15 * (np.ones((3, 3)) - np.eye(3))
+    assert as_numbers(np.diag(moments) + other) == (*moments, 0.0, 0.0, 0.0)
+    assert as_numbers(np.diag(moments) + 1e3 * other) == (*moments, 1e-12, 1e-12, 1e-12)
 
 
 def test_tensor_of_one_three_and_six_numbers():

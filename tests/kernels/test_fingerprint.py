@@ -169,7 +169,7 @@ def test_an_edit_of_any_function_changes_the_keys_of_all_kernels_that_reach_it(t
 def other(value):
     """Another value of the same kind."""
     if isinstance(value, int | float):
-        return value + 1 if isfinite(value) else 0.0
+        return value + max(1, abs(value)) if isfinite(value) else 0.0
     if isinstance(value, np.ndarray):
         changed = value.copy()
         changed.flat[-1] += 1

@@ -7,7 +7,7 @@ import pytest
 
 from trsim.kernels import plain
 from trsim.laws import operations as op
-from trsim.laws.ranges import ranged
+from trsim.laws.ranges import ALL, ROUNDING, ranged, widened
 
 TWO = {
     op.ADD: (lambda a, b: a + b, lambda a, b: (1.0, 1.0)),
@@ -114,3 +114,14 @@ def test_what_jumps_has_any_rate_where_it_may(code, x):
 def test_held_or_beside_its_jumps_it_stays(code, x, held):
     value, rate = INTO(code, (x, (1.0, 1.0)), ((0.0, 0.0), (0.0, 0.0)), held)
     assert value[0] == value[1] and rate == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("low, high", [(-3.0, -1.0), (-1.0, 3.0), (1.0, 3.0), (-1e9, -1e9)])
+def test_an_interval_is_widened_on_both_sides(low, high):
+    for wide, end, way in zip(widened.python(low, high), (low, high), (-1, 1), strict=True):
+        assert way * (wide - end) == pytest.approx(ROUNDING * abs(end), rel=0.2)
+
+
+def test_what_is_no_interval_has_no_bounds():
+    none = widened.python(1.0, -1.0), widened.python(math.nan, 1.0)
+    assert none == (ALL, ALL) == ((-math.inf, math.inf),) * 2

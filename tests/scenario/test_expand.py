@@ -6,8 +6,10 @@ from hashlib import sha256
 import pytest
 
 from trsim.errors import FileError, ScenarioError, TrsimError, UsageError
+from trsim.scenario.cases import cases
 from trsim.scenario.expand import DEEPEST, MOST, expand, expand_text, parameters, rows
 from trsim.scenario.load import load
+from trsim.scenario.text import read
 from trsim.sweeps.plan import plan
 
 from ..watching import watched
@@ -182,6 +184,15 @@ def test_fan_out(here):
     assert refusal("c.yaml").what == f"more than {MOST} files"
 
 
+def test_how_many_files_cases_may_extend(here):
+    """1000, with the one they stand in."""
+    for more in (999, 1000):
+        files(here, a="x: 1", top=f"cases: {{one: {{extends: [{', '.join(['a.yaml'] * more)}]}}}}")
+        if more < 1000:
+            assert data("top.yaml")["cases"]["one"] == {"x": 1}
+    assert refusal("top.yaml").what == "more than 1000 files"
+
+
 def test_a_fault_in_an_extended_file_is_shown_there(here):
     files(here, base="a: 1\na: 2", top="extends: base.yaml")
     assert refusal("top.yaml").show().startswith("base.yaml:2:1: key 'a' stands here twice")
@@ -314,6 +325,18 @@ def test_cases_extend_cases_in_any_order(here):
     assert cases["limit"] == {**limit, "sweep": {"parameters.gust": [1, 2]}}
     assert cases["ultimate"] == {**limit, "parameters": {"gust": 3, "k": 7, "factor": 1.5}}
     assert cases["ultimate"]["initial"] is not cases["closed"]["initial"]  # --set changes one
+
+
+def test_a_case_knows_where_the_keys_of_its_file_are():
+    text = "gravity: [0, 0]\nbodies:\n  door: {mass: 1}\ncases:\n  one: {title: first}\n"
+    found = cases(read(text, "top.yaml"))["one"]
+    for path, line, column in (
+        (("gravity",), 1, 1), (("bodies", "door"), 3, 3), (("bodies", "door", "mass"), 3, 10),
+        (("title",), 5, 9),
+    ):  # fmt: skip
+        place = found.key_place(path)
+        assert (place.file, place.line, place.column) == ("top.yaml", line, column), path
+    assert all(path[0] != "cases" for path in (*found.keys, *found.marks) if path)
 
 
 def test_a_case_that_extends_itself_is_refused_where_it_says_so(here):

@@ -1,6 +1,7 @@
 """Friction passes its corners at located points, and nowhere else."""
 
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from scipy.integrate import solve_ivp
 from trsim.laws.contact import ramped_damping
 from trsim.laws.friction import beyond, branch_of, modified_coulomb, neighbour, on_branch
 from trsim.scenario.load import load
+from trsim.solve.march import sensed
 
 from ..linkages import REVERSER
 from ..mechanisms import p1_slider_crank
@@ -145,3 +147,45 @@ def test_a_stop_that_stops_pulling_pushes_again_before_it_is_left():
     r = run(BUMPER.replace("DAMPING", "150").replace("METHOD", "dop853"))
     assert r["block.velocity"][-1, 0] == pytest.approx(rebound(150), rel=1e-7)
     assert r.outcome.statistics["corners"] == 4
+
+
+@pytest.mark.parametrize("jump", [0.0, 1.0, 2.0, 1e4])
+def test_a_step_onto_another_piece_is_cut_to_what_that_does(monkeypatch, jump):
+    """By four until `jump` times it is a twentieth of the speed; what functions are held on stays
+    as it is, and so do the pieces before."""
+    s = SimpleNamespace(n_q=1, n_v=1, tab=np.array([9.0, 5.0]), held=np.array([1]))
+    r = SimpleNamespace(h=1.0, y=np.array([0.3, 2.0]), yd=np.array([2.0, 0.0]))
+    b = SimpleNamespace(
+        weight=np.ones(2), y2=np.zeros(2), K=np.zeros((3, 2)), before=np.array([4.0])
+    )
+
+    def evaluate(s, t, y, yd):  # the piece of before pushes by `jump` more
+        yd[1] = jump * (s.tab[1] == 4.0)
+
+    monkeypatch.setattr(sensed, "evaluate", evaluate)
+    monkeypatch.setattr(sensed, "swap", sensed.swap.python)
+    assert sensed.ease.python(s, r, b, 0.0) == (jump > 0.0)
+    least = 1.0
+    while jump * least > 0.05 * 2.0:
+        least *= 0.25
+    assert r.h == least
+    assert (s.tab.tolist(), b.before.tolist()) == ([9.0, 5.0], [4.0])
+
+
+@pytest.mark.parametrize("fixed, told", [(0.0, sensed.UNCERTAIN), (1.0, sensed.NONE)])
+def test_a_search_that_gives_up_asks_for_a_shorter_step_where_there_is_one(
+    monkeypatch, fixed, told
+):
+    s = SimpleNamespace(sensed=np.zeros((1, 3), int), S=np.zeros((1, 2)))
+    b = SimpleNamespace(t=0.0, h=1.0, shown=np.zeros((1, 2)), seen=np.zeros((1, 4)))
+    r = SimpleNamespace(unproved=0)
+    looks = []
+    for name, stand_in in {
+        "LOOKS": 3, "spread": lambda *_: (0.0, 0.0), "hidden_depth": lambda *_: 0.0,
+        "see": lambda *_: None, "limit": lambda *_: None,
+        "show": lambda s, r, b, high: looks.append(high), "verdict": lambda *_: sensed.UNSURE,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(sensed, name, stand_in)
+    setting = SimpleNamespace(fixed_step=fixed, t_end=1.0)
+    assert sensed.first_corner.python(s, r, b, setting) == told
+    assert r.unproved == 1 and looks == [1.0, 0.5, 0.25]

@@ -7,14 +7,19 @@ Cranks of nearly one length turn over at the flat places of their parallelogram,
 never changes its sign while they move; a run that goes straight on changes it.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from trsim.assemble.equations import poses
 from trsim.assemble.reduce import in_solve_axes, jacobian, moves, roots, times_roots
 from trsim.elements.scene import workspace
+from trsim.kernels.plain import run as as_python
 from trsim.solve.diagnose.doubts import doubts
 from trsim.solve.diagnose.locked import dependent, locked
+from trsim.solve.march import complete
+from trsim.solve.march.passes import row_may_turn
 
 from ..overconstrained import METHODS, ORDINARY, TILTED, Z, cranks, text
 from ..runs import run
@@ -267,3 +272,30 @@ def test_no_velocity_there_is_said_to_lock(stopped, R):
         y[model.n_q : model.n_q + model.n_v] = in_solve_axes(work, rates)
         said = locked(r.mechanism, t, y)
         assert "nearly meet" in said and "locks" not in said, angle
+
+
+@pytest.mark.parametrize("last", [0.0, 1.0])
+def test_what_does_not_move_does_not_turn_round(last):
+    """A row with nothing of its own, too."""
+    s = SimpleNamespace(row=np.zeros(1, int), column_start=np.zeros(2, int), m=1)
+    for way, may in ((0.0, False), (0.1, True)):
+        assert as_python(row_may_turn.python, s, np.zeros((3, 1)), way, last, 0) == may
+
+
+@pytest.mark.parametrize("tolerance, allowed", [(1e-6, 1e-7), (1e-12, 1e-11)])
+@pytest.mark.parametrize("lost", [0.9, -0.9, 1.2, -1.2])
+def test_how_much_energy_may_go_astray_in_a_step(monkeypatch, tolerance, allowed, lost):
+    """Of 3 J a tenth of the tolerance, or 1e-11 (docs/numerics.md)."""
+    s, b = SimpleNamespace(n_out=2, out=np.zeros(2)), SimpleNamespace(out=np.zeros(2), **BARE)
+    r = SimpleNamespace(y=2.0, work_projection=0.0, energy_0=0.0)
+
+    def measure(s, t, y, done, energy_0):
+        s.out[1] = lost * allowed * 3.0
+
+    monkeypatch.setattr(complete, "kinetic", lambda s, y: y)
+    monkeypatch.setattr(complete, "measure", measure)
+    setting = SimpleNamespace(fixed_step=0.0, step_error=tolerance, t_end=1.0)
+    assert complete.leaked.python(s, r, b, setting) == (abs(lost) > 1)
+
+
+BARE = {"t1": 0.1, "h": 0.1, "y1": 3.0, "projected": 0.0}

@@ -4,6 +4,7 @@ from math import comb, exp
 
 import numpy as np
 import pytest
+from scipy.integrate._ivp import dop853_coefficients as published
 
 from trsim.assemble.equations import derivative
 from trsim.elements.contract import SCENE, compiled
@@ -15,7 +16,7 @@ from trsim.solve.march.accelerations import share
 from trsim.solve.march.calls import FIELDS, INTERPOLATE_AT, SAMPLE_AT, method_row
 from trsim.solve.march.norm import weights
 from trsim.solve.march.record import SETTINGS
-from trsim.solve.methods import dop853
+from trsim.solve.methods import dop853, dop853_tableau
 from trsim.solve.outcome import settings
 
 from ..runs import run
@@ -94,3 +95,17 @@ def test_the_error_at_the_limit_of_stability_is_not_hidden_by_a_slower_motion(z,
     allowed = setting.tolerance * SLOW * share.python(s, setting, h, dop853.STEADY)
     assert missed > 10.0 * allowed  # so it must be refused
     assert estimate > 0.2 * missed / allowed
+
+
+def test_the_coefficients_are_those_published():
+    """As scipy has them, and the sums that any method of order 8 has."""
+    for ours, theirs in (
+        (dop853_tableau.A, published.A), (dop853_tableau.C, published.C),
+        (dop853_tableau.E3, published.E3), (dop853_tableau.E5, published.E5),
+        (dop853_tableau.D, published.D),
+    ):  # fmt: skip
+        np.testing.assert_allclose(ours, theirs, rtol=4e-16, atol=1e-15)
+    A, C = dop853_tableau.A, dop853_tableau.C
+    np.testing.assert_allclose(A.sum(axis=1), C, atol=1e-13)
+    for k in range(8):
+        assert A[12, :12] @ C[:12] ** k == pytest.approx(1 / (k + 1), abs=1e-14)

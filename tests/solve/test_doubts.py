@@ -2,14 +2,16 @@
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tests.small import SLIDER_CRANK
 from trsim.assemble.assemble import assemble
+from trsim.elements.contract import STORED
 from trsim.scenario.load import load, loads
-from trsim.solve.diagnose.doubts import doubts, of_start
+from trsim.solve.diagnose.doubts import doubts, of_start, of_waves
 from trsim.solve.start.consistent import start
 from trsim.solve.start.projected import projected
 from trsim.sweeps.plan import plan
@@ -223,3 +225,17 @@ def test_what_rests_on_forces_that_balance_has_no_open_book(planar, does):
     moved = run(text.replace("FORCE", "999.9"))  # what moves is held to what it exchanges
     assert moved.outcome.statistics["energy_residual_relative"] < 1e-6
     assert np.abs(moved["b.velocity"]).max() > 1e-6
+
+
+@pytest.mark.parametrize("stored", range(len(STORED)))
+def test_waves_of_what_is_at_rest_are_none(stored):
+    """Kinetic energy is compared with what is stored of any kind: it is rounding, or motion."""
+    beam = SimpleNamespace(length=1.0, nodes=3, stiffness=1e4, bending=1.0, per_length=1.0)
+    mechanism = SimpleNamespace(model=SimpleNamespace(column_energy=2), beams={"bar": beam})
+    told = {}
+    for kinetic in (1e-10, 1e-8):
+        peaks = np.zeros((3 + len(STORED) + 2, 5))
+        peaks[2, 0], peaks[3 + stored, 0], peaks[[0, -1], 0] = kinetic, 1.0, 1e6
+        ended = SimpleNamespace(peaks=peaks, statistics={"steps": 2}, record=SimpleNamespace(t=1.0))
+        told[kinetic] = [*of_waves(mechanism, ended)]
+    assert told[1e-10] == [] and "passed over its fastest waves" in told[1e-8][0]

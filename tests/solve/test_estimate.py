@@ -29,13 +29,14 @@ RATE = -1000.0  # 1/s, of the decay
 METHODS = {"index1": radau, "ggl": radau_ggl}
 
 
-def tried(formulation, h, weight, again):
+def tried(formulation, h, weight, again, text=DAMPED, place=None):
     """Error of the speed that a step of this length estimates, and the speed it begins with.
 
-    weight: of the speed in the error norm, which sees nothing else; again: 1 after a rejection.
+    weight: of the speed in the error norm, which sees nothing else; again: 1 after a rejection;
+    place: of another entry of y than the speed.
     """
     method = METHODS[formulation]
-    scenario = loads(DAMPED, [f"solver.formulation={formulation}"])
+    scenario = loads(text, [f"solver.formulation={formulation}"])
     ended = run(scenario)
     mechanism, r = ended.mechanism, ended.outcome.record
     s, setting = scene(mechanism.model), settings(scenario, mechanism)
@@ -43,12 +44,13 @@ def tried(formulation, h, weight, again):
     if method is radau_ggl:
         b = ggl_tables.buffers(b, mechanism, mechanism.model)
     b.weight[:] = 0.0
-    b.weight[s.n_q] = weight
+    place = s.n_q if place is None else place
+    b.weight[place] = weight
     derivative(s, r.t, r.y, r.yd)
     r.jacobian, r.history = rec.NO_JACOBIAN, rec.NO_HISTORY
     r.after_rejection = again
     assert method.step(s, r, b, setting, r.t, h) != radau.HALVE
-    return b.K[radau.F, s.n_q], r.y[s.n_q]
+    return b.K[radau.F, place], r.y[place]
 
 
 def estimates(h, v):
@@ -69,3 +71,20 @@ def test_estimate_of_a_decay(h, again, formulation):
     assert large == pytest.approx(twice, rel=1e-4)
     if h >= 0.1:  # over hundreds of decays the first is all the speed there was
         assert abs(once) > 0.8 * v > 20.0 * abs(twice)
+
+
+DRIVEN = (
+    DAMPED.replace("velocity: [1, 0]", "velocity: [3, 0]")
+    + """
+drives: {push: {joint: slide, velocity: 3 + (200*t)**3, compliance: {stiffness: 10}}}
+"""
+)
+
+
+@pytest.mark.parametrize("formulation", METHODS)
+@pytest.mark.parametrize("h", [1e-3, 1e-2])
+def test_estimate_of_a_state(h, formulation):
+    """The last entry of y, a drive's way: z' = f(t) goes with h/GAMMA alone."""
+    found, _ = tried(formulation, h, 1e-9, 1, DRIVEN, -1)
+    speeds = 3 + (200 * h * A.sum(axis=1)) ** 3
+    assert found == pytest.approx((3 + E @ A @ speeds) * h / GAMMA, rel=1e-6)

@@ -1,6 +1,8 @@
 """Radau on stabilised index-2 equations: the same motion as on index 1, on its constraints,
 at a cost that grows with the number of bodies."""
 
+from math import cos, sin
+
 import numpy as np
 import pytest
 
@@ -259,6 +261,48 @@ def test_every_state_leads_to_the_same_end(sets, monkeypatch):
     for k in range(0, len(cut) - 1, max(1, len(cut) // 4)):
         rest, end = blocks(sets, cut[k].state)
         same([*cut[: k + 1], *rest], end)
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_a_bar_falls_as_a_whole_beside_a_weight_on_a_pivot(planar):
+    r = run(
+        f"""
+planar: {planar}
+bodies:
+  weight: {{mass: 2, inertia: [1, 1, 1], at: [0.5, 0]}}
+  bar: {{type: ancf_cable, start: [0, 0], end: [1, 0], elements: 2, section: {{diameter: 20 mm}},
+        youngs_modulus: 10 MPa, density: 1000 kg/m^3}}
+joints: {{pivot: {{type: revolute, bodies: [ground, weight], at: [0, 0]}}}}
+drives: {{turn: {{joint: pivot, position: 100*t}}}}
+gravity: [3, -9.81, 0]
+solver: {{end: 10 ms, tolerance: 1e-6, max_steps: 200}}
+output: {{every: 10 ms}}
+""",
+        *GGL,
+    )
+    for node, x in enumerate((0.0, 0.5, 1.0)):
+        place = [x + 3 * 5e-5, -9.81 * 5e-5, 0.0]
+        assert r[f"bar.node{node}.position"][-1] == pytest.approx(place, abs=1e-9)
+    assert r["weight.position"][-1] == pytest.approx([0.5 * cos(1), 0.5 * sin(1), 0], abs=1e-9)
+    pull = np.array([-1e4 * cos(1) - 2 * 3, -1e4 * sin(1) + 2 * 9.81, 0.0])
+    assert r["pivot.reaction"][-1] == pytest.approx(pull, abs=1e-5)
+
+
+def test_multipliers_are_found_with_the_stages():
+    """A swing takes some 200 steps, thousands where Newton's method does not find lam and mu."""
+    r = run(
+        """
+planar: true
+bodies: {bob: {mass: 2, inertia: 0.01, at: [0.5, 0]}}
+joints: {pivot: {type: revolute, bodies: [ground, bob], at: [0, 0]}}
+gravity: [0, -9.81]
+solver: {end: 0.5, tolerance: 1e-8, max_steps: 1000}
+output: {every: 0.1}
+""",
+        *GGL,
+    )
+    kinetic = 0.5 * (2 * 0.5**2 + 0.01) * r["bob.angular_velocity"][:, 2] ** 2
+    assert kinetic == pytest.approx(-2 * 9.81 * r["bob.position"][:, 1], abs=1e-6)
 
 
 # --- large models --------------------------------------------------------------------------------

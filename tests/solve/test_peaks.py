@@ -2,6 +2,7 @@
 with rows far apart and close together."""
 
 from math import cos, hypot, pi, sin, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from scipy.interpolate import Akima1DInterpolator
 from trsim.analyse.trajectory import changed, marched
 from trsim.assemble.assemble import assemble
 from trsim.scenario.load import loads
+from trsim.solve.march import peaks
 
 from ..runs import run
 from ..truth.trial import made
@@ -431,3 +433,64 @@ def test_rows_stay_on_their_branch_where_branches_meet(rows):
     (rate,) = [1 + c.start for c in mechanism.columns if c.name == "angle.rate"]
     assert told[:, rate].max() < -7.5
     assert outcome.peaks[rate - 1, 0] < -7.5
+
+
+@pytest.mark.parametrize("doubt, looks", [(1e-9, 0), (0.5, 1)])
+def test_what_is_not_sure_is_looked_at(monkeypatch, doubt, looks):
+    """A polynomial is taken at its word where what it may lack is little of what may be missed."""
+    b = SimpleNamespace(
+        node=np.array([[1.0, 0.0]]), n_found=0, found=np.zeros(9), firm=np.ones(2), astray=0
+    )
+    r, seen = SimpleNamespace(peak=np.zeros((5, 1))), []
+
+    def look(s, r, b, setting, method, where):
+        seen.append(where[1])
+        b.astray = 1  # no more than one
+
+    def extreme(r, o, place, value, firm):
+        r.peak[:2, o] = value, place
+
+    for name, stand_in in {
+        "through": lambda *_: peaks.POINTS, "top": lambda *_: (0.4, 2.0 + doubt), "look": look,
+        "known_place": lambda *_: False, "settled": lambda *_: True, "extreme": extreme,
+        "polynomial": lambda *_: 2.0,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(peaks, name, stand_in)
+    peaks.search.python(SimpleNamespace(sought=[0]), r, b, None, None, (0, 0, 1.0, 1e-3))
+    assert seen == [0.4] * looks
+    assert r.peak[:2, 0].tolist() == ([0.0, 0.0] if looks else [2.0, 0.4])
+
+
+@pytest.mark.parametrize("samples", [2, 9])
+@pytest.mark.parametrize("shows", [False, True])
+def test_a_dense_output_is_built_where_a_guess_of_the_middle_asks_for_it(
+    monkeypatch, samples, shows
+):
+    """Guesses are no extremes themselves: where they show one what is there is looked at."""
+    s = SimpleNamespace(sought=[0], kin=[0], lever=[1.0], least=[-np.inf])
+    r = SimpleNamespace(
+        sample=np.zeros((2, 1)), sampled=np.array([1.0, 0.5]), newest=0, n_samples=samples, steps=1,
+        peak=np.zeros((5, 1)), largest=[1.0], faint=[0.0],
+    )  # fmt: skip
+    b = SimpleNamespace(
+        n_found=0, astray=0, bound=np.array([[0.0], [1.0]]), inside=np.zeros((9, 1)), t=1.0, laid=0
+    )
+    done = []
+
+    def guess(s, r, b, method, ahead, inner):
+        b.n_found, b.inside[0, 0] = 1, 2.0 * shows
+
+    def look_within(s, r, b, setting, method, where):
+        done.append(("built", b.n_found))
+        b.astray = 1
+
+    for name, stand_in in {
+        "older": lambda r, k: k, "ready": lambda *_: False, "length": lambda *_: 1.0,
+        "bounds": lambda *_: None, "reached": lambda *_: (True, True), "guess": guess,
+        "guessed": lambda s, r, b, *_: (b.n_found > 0 and b.inside[0, 0] > 0, False),
+        "look_within": look_within, "search": lambda *_: None,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(peaks, name, stand_in)
+    setting = SimpleNamespace(missed=0.01, t_end=2.0)
+    peaks.between.python(s, r, b, setting, None, 0)
+    assert done == [("built", 0)] * shows

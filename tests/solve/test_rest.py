@@ -258,3 +258,28 @@ def test_on_a_cam():
     column = next(c for c in found.mechanism.columns if c.name == "motor.force")
     # h = e sin a + sqrt((a + r)^2 - (e cos a)^2) at a = 0
     assert found.channels[column.start] == pytest.approx(0.5 * 9.81 * 0.015, abs=1e-9)
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_turns_are_those_since_the_drawing(planar):
+    """Whatever axes the body was drawn with."""
+    text = SPRUNG.format(planar=planar, bodies="[ground, rod]")
+    found = rest(text.replace("at: [0.2, 0]}", "at: [0.2, 0], angle: 0.5}"))
+    q = brentq(lambda x: sprung(x)[0], -1, 1)
+    assert found.turns["rod"] == pytest.approx([0, 0, q], abs=1e-9)
+
+
+@pytest.mark.parametrize("size", [0.01, 1.0, 100.0])
+def test_the_nearest_balance_is_found_at_any_size(size):
+    """Of many that a wave of force has, 2 cos(x/w): at x = pi/2 w, from where x is 0."""
+    r = run(f"""
+planar: true
+bodies: {{block: {{mass: 1, inertia: 1e-4, at: [{size}, 0]}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, block], at: [0, 0], axis: [1, 0, 0]}}}}
+sensors: {{way: {{joint: slide}}}}
+forces:
+  wave: {{type: applied_load, body: block, direction: [1, 0], force: 2*cos(way/{0.05 * size})}}
+initial: {{equilibrium: all}}
+solver: {{end: 1e-6}}
+""")
+    assert r["way"][0] == pytest.approx(np.pi / 2 * 0.05 * size, rel=1e-6)

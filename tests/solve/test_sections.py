@@ -1,10 +1,13 @@
 """Points of Poincare sections: where, in which direction, and that nothing else is changed."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from trsim.errors import ScenarioError
 from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.march import sections
 
 from .. import small
 from ..mechanisms import torsion_pendulum
@@ -63,6 +66,27 @@ def test_nothing_before_its_time():
     points = run(text).section("zero")
     expected = (np.arange(19) + 0.5) * HALF
     assert points[:, 0] == pytest.approx(expected[expected >= 1.0], abs=1e-10)
+
+
+def test_the_rate_of_a_channel_at_the_end_of_a_step_however_late(monkeypatch):
+    """Of y^2 with y' = 3 at y = 2, told by what is a little ahead: 12."""
+    t = 1e5
+    s = SimpleNamespace(section=np.zeros((1, 8), int), section_at=np.zeros((1, 8)), out=np.zeros(1))
+    s.section[0, sections.KIND] = sections.CROSSING
+    r = SimpleNamespace(section=np.ones((1, 40)), work_projection=0.0, energy_0=0.0)
+    b = SimpleNamespace(
+        t=t, t1=t + 0.01, built=0, P=np.zeros((1, 1)), K=np.full((2, 1), 3.0), y1=np.full(1, 2.0),
+        y2=np.zeros(1), out=np.full(1, 4.0),
+    )  # fmt: skip
+
+    def measure(s, t, y, *_):
+        s.out[0] = y[0] ** 2
+
+    monkeypatch.setattr(sections, "measure", measure)
+    monkeypatch.setattr(sections, "evaluate_to_measure", lambda *_: None)
+    monkeypatch.setattr(sections, "crosses_after", sections.crosses_after.python)
+    sections.ends_known.python(s, r, b, 1, 0)
+    assert r.section[0, sections.END_RATE] == pytest.approx(12.0, rel=1e-4)
 
 
 THROWN = """

@@ -9,6 +9,8 @@ import pytest
 
 from tests.runs import run
 from tests.solve.test_ggl import GGL, SPUN
+from trsim.elements.contract import N_BOOK
+from trsim.kernels.vectors import all_finite, clear, copy_to
 from trsim.solve.march import settle
 from trsim.solve.march.record import CHANGES_KEPT
 from trsim.solve.methods import radau
@@ -88,3 +90,40 @@ def test_changes_are_learned_once(monkeypatch):
     assert settle.learned.python(s, K, 3) == 0
     kept = slice(settle.DY, settle.DY + 3), slice(settle.DF, settle.DF + 3)
     np.testing.assert_allclose(K[kept[0]] @ J.T, K[kept[1]], atol=1e-12)
+
+
+def test_nothing_is_learned_from_what_was_tried_before(monkeypatch):
+    """A' = J y of two unknowns, whose matrix the method knows by half: it comes to rest all the
+    same, in a room with changes of other places, which are no numbers here."""
+    J, half = np.array([[-3.0, 1.0], [2.0, -5.0]]), np.array([[-6.0, 0.0], [0.0, -9.0]])
+    s = SimpleNamespace(n_q=0, n_v=2, v_node=2, n_z=0, m=0, scale=np.ones(2), tolerance=1e-6)
+    s.n_z, s.size = N_BOOK, 1.0
+    K = np.full((5 + 2 * CHANGES_KEPT + 1, 2 + N_BOOK), np.nan)
+    K[settle.SLOW] = 0.0
+    b = SimpleNamespace(tried=K, soften=0, weight=np.ones(2 + N_BOOK))
+
+    def soften(_, s, r, b, change):
+        change[:2] = np.linalg.solve(np.eye(2) - half, change[:2])
+        return 1.0
+
+    def evaluate(s, t, y, yd):
+        yd[:2] = J @ y[:2]
+
+    stand_ins = {
+        "call_soften": soften, "evaluate": evaluate, "normalise": lambda *_: None,
+        "onto_rows": lambda *_: None, "apart": lambda s, yd, f, rate: np.abs(f * yd - rate).max(),
+        "largest": lambda s, left, least: np.abs(left).max(),
+        "copy_to": copy_to.python, "all_finite": all_finite.python,
+    }  # fmt: skip
+    for name, stand_in in stand_ins.items():
+        monkeypatch.setattr(settle, name, stand_in)
+    for name in ("remaining", "next_change", "learned", "resolved", "product"):
+        monkeypatch.setattr(settle, name, getattr(settle, name).python)
+    monkeypatch.setattr(settle, "clear", clear.python)
+    y, yd = np.array([1.0, -2.0, *[0.0] * N_BOOK]), np.zeros(2 + N_BOOK)
+    evaluate(s, 0.0, y, yd)
+    rest, known = settle.solved.python(s, None, b, 0.5, (0.0, y, yd), 1e-9)
+    assert rest < 1e-9 and 0 < known <= 3
+    # F = A - mu (y - y_0) is away: (J - 1) y = -y_0
+    wanted = np.linalg.solve(np.eye(2) - J, [1.0, -2.0])
+    np.testing.assert_allclose(y[:2], wanted, atol=1e-8)

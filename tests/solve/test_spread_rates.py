@@ -1,5 +1,7 @@
 """Bounds of how rates of sensors go inside a step, against motions that are followed closely."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
@@ -12,7 +14,7 @@ from trsim.assemble.travel import ANGLE, DISTANCE, RATE_OF, STROKE, SWING
 from trsim.elements.scene import scene
 from trsim.kernels import plain
 from trsim.solve.march.record import fresh_buffers
-from trsim.solve.march.spread_rates import spread_of_rate
+from trsim.solve.march.spread_rates import spread_of_rate, turned
 
 from ..elements.bench import product
 
@@ -125,3 +127,20 @@ def test_nothing_goes_beyond_its_bounds(text, planar, seed):
             if high - low < 0.1 and kind - RATE_OF != DISTANCE and np.inf > M:
                 assert 1e3 * once + 1e3 > L  # a bound that says something
     assert found == KINDS[text]
+
+
+@pytest.mark.parametrize("length", [0.2, 1.0, 4.0])
+def test_a_slope_turns_the_faster_the_shorter_it_may_be(length):
+    """A node's slope of length 1 at the end, whose ends move apart at 0.2 1/s: it may have been
+    shorter by that times the time, and 0.2 over its length is what it turns by at most."""
+    s = SimpleNamespace(
+        d=6, n_r=1, n_q=0, v_node=0, d_node=6, G=np.array([[0.0] * 3, [0.6, 0, 0.8]])
+    )
+    r = SimpleNamespace(degree=3, y=np.array([0, 0, 0, 0.0, 0.2, 0.0]))
+    b = SimpleNamespace(curve=np.zeros((9, 14)))
+    most, second, third = plain.plain(turned.python)(s, r, b, 1, 0, length)
+    w = 0.2 / (1 - 0.2 * length)
+    assert most == pytest.approx(w)
+    assert second == pytest.approx(5 * w**2) and third == pytest.approx(21 * w**3 + 5 * w**3)
+    r.y *= 5 / length  # it may have had no length at all
+    assert plain.plain(turned.python)(s, r, b, 1, 0, length) == (np.inf,) * 3

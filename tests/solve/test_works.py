@@ -8,10 +8,15 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from trsim.assemble.equations import derivative
+from trsim.elements.contract import N_BOOK
+from trsim.elements.scene import scene
 from trsim.laws.tables import akima, cubics
 from trsim.solve.diagnose.doubts import of_books
+from trsim.solve.methods import scipy_ivp
+from trsim.solve.methods.scipy_ivp import books
 
-from ..runs import run
+from ..runs import built, run
 
 STROKE = """
 bodies: {{block: {{mass: 2, inertia: [0.01, 0.01, 0.01]}}}}
@@ -207,3 +212,38 @@ def test_steps_do_not_depend_on_what_is_recorded(method):
         for less in ((), ("output.channels=[]",))
     ]
     assert all(np.array_equal(y, ends[0]) for y in ends)
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_where_scipy_finds_the_works(planar):
+    """Behind the velocities, in front of the states: what a load gives is there alone."""
+    mechanism = built(f"""
+planar: {planar}
+bodies: {{block: {{mass: 2, inertia: [1, 1, 1], at: [1, 0, 0], velocity: [3, 0, 0]}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}}}
+drives: {{push: {{joint: slide, velocity: 3, compliance: {{stiffness: 10}}}}}}
+forces: {{pull: {{type: applied_load, body: block, direction: [1, 0, 0], force: 7}}}}
+""")
+    s, y = scene(mechanism.model), mechanism.y0.copy()
+    y[s.n_q] = 3.0
+    yd = np.zeros_like(y)
+    derivative(s, 0.0, y, yd)
+    works = np.arange(len(y))[books(s)]
+    assert len(works) == N_BOOK and len(y) - works[-1] == 2  # the way of the drive is the last
+    assert yd[works].tolist() == [0.0, 21.0, 0.0, 0.0, 0.0]
+
+
+def test_scipy_begins_with_the_error_allowed(monkeypatch):
+    """No factor of accelerations is known before the first step."""
+    asked, restarted = [], scipy_ivp.restarted
+
+    def noted(run, finer, *most):
+        asked.append(finer)
+        return restarted(run, finer, *most)
+
+    monkeypatch.setattr(scipy_ivp, "restarted", noted)
+    run(f"{FLYING}solver: {{end: 1 ms, method: 'scipy:RK45'}}")
+    assert asked[0] == 1.0
+
+
+FLYING = "bodies: {ball: {mass: 1, inertia: 1, velocity: [1, 2]}}\n"

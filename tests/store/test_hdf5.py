@@ -123,6 +123,10 @@ def test_peaks(result):
     reaction = peaks["O.reaction", "magnitude"]
     size = np.linalg.norm(result.channel("O.reaction"), axis=1)
     assert size.max() <= reaction.value <= 1.02 * size.max()  # rows pass it by
+    with h5py.File(result.path) as file:
+        assert file["peaks/time"].attrs["units"] == "s"
+        assert "between steps" in file["peaks"].attrs["extremes"]
+        assert file["peaks/stroke"].attrs["units"] == file["stroke"].attrs["units"]
     near = result.time[size.argmax()]
     assert abs(reaction.time - near) <= result.time[1] - result.time[0]
     stroke = np.interp(reaction.time, result.time, result.channel("stroke"))

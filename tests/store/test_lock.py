@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import time
+from types import SimpleNamespace
 
 import pytest
 
@@ -13,6 +14,7 @@ from tests.elsewhere import needs
 from tests.store import outside
 from trsim.cli import main
 from trsim.errors import FileError
+from trsim.store import lock
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.read import read
 
@@ -186,3 +188,27 @@ def running(number):
     found = subprocess.run(["ps", "-o", "stat=", "-p", str(number)],  # noqa: S603, S607
                            capture_output=True, text=True, check=False)  # fmt: skip
     return bool(found.stdout.strip()) and not found.stdout.startswith("Z")
+
+
+def test_a_lock_is_that_of_the_file_that_has_the_name(tmp_path, monkeypatch):
+    """At the first attempt, or at the second where the last owner removed it in between."""
+    for removed in (0, 1):
+        handles, locked = [], lock._lock
+
+        def opened(*rest, handles=handles, open_=os.open):
+            assert len(handles) < 3, "it never ends"
+            handles.append(open_(*rest))
+            return handles[-1]
+
+        def taken(handle, final, shared=False, handles=handles, locked=locked, removed=removed):
+            if len(handles) <= removed:
+                (tmp_path / "x.h5.lock").unlink()
+            locked(handle, final, shared)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(lock, "os", SimpleNamespace(**{**vars(os), "open": opened}))
+            patch.setattr(lock, "_lock", taken)
+            handle = lock._held(tmp_path / "x.h5.lock", tmp_path / "x.h5")
+        assert len(handles) == 1 + removed and handle == handles[-1]
+        assert os.path.samestat(os.fstat(handle), os.stat(tmp_path / "x.h5.lock"))
+        os.close(handle)

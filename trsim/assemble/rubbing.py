@@ -281,7 +281,7 @@ def direction(s):
         room[STEP, k] = room[LEFT, k]
     for k in range(n):
         best = k
-        for i in range(k + 1, n):
+        for i in range(k, n):
             if abs(room[MATRIX + i, k]) > abs(room[MATRIX + best, k]):
                 best = i
         for l in range(n):

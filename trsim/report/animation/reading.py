@@ -24,6 +24,8 @@ from trsim.report.animation.trains import LONG, rim, transmissions
 from trsim.scenario.load import loads
 from trsim.store.read import Run
 
+ALONG_Z = (0.0, 0.0, 1.0)  # of a joint that has no axis
+
 
 def drawing(run: Run) -> Drawing:
     """What a run was made of; bodies without a recorded place are left out and named."""
@@ -69,7 +71,7 @@ def joints(drawn: Drawing) -> tuple[Joint, ...]:
         at = getattr(spec, "at", None)
         if at is None:  # a slide: at the centre of the second body
             at = drawn.bodies[j] if j in drawn.bodies else middle(drawn, j)
-        axes = np.array(perpendicular(getattr(spec, "axis", (0.0, 0.0, 1.0)), spec.drawn_in))
+        axes = np.array(perpendicular(getattr(spec, "axis", None) or ALONG_Z, spec.drawn_in))
         if picture == "cross":
             axes[1] = direction(spec.second_axis)
             axes[0] = np.cross(axes[1], axes[2])

@@ -69,6 +69,7 @@ AT_REST = 1e-9  # of the largest stored energy: kinetic energy of what does not 
 COARSE = 0.2  # rad in a fixed step: 31 steps a turn
 PASSED = 2.0  # periods of the fastest wave in a mean step
 TOLD = 3  # jumps of velocities, one by one
+ROUNDED = 2.0  # times what a tolerance allows: rounding is not known any better
 OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
 
 
@@ -267,7 +268,7 @@ def of_jumps(mechanism: Mechanism, r: Record) -> Iterator[str]:
 def of_rounding(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """A tolerance below what the arithmetic can tell."""
     rounded = outcome.statistics.get("rounding_of_tolerance", 0.0)
-    if rounded <= 1.0:
+    if rounded <= ROUNDED:
         return
     what = whose(mechanism, int(outcome.record.rounded_at))
     much, inside = outcome.record.rounded_by, f" in {what}" if what else ""

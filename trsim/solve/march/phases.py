@@ -79,8 +79,6 @@ def change_phases(s, r, b, setting, t1):
                 continue
             speed = max(speed, 1e-12)
             h = min(h, hertz_step(own.stiffness, own.exponent, own.mass, speed, setting.step_error))
-        else:
-            memory.impact_speed = 0.0
     are_closed = closed(s, r)
     if were_closed == 0 and are_closed > 0:
         r.free_h = min(r.h, AS_LONG * (t1 - r.free_since))
