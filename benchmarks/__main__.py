@@ -4,7 +4,8 @@ import sys
 from importlib import import_module
 
 NAMES = (
-    *("startup", "memory", "reverser", "rods", "skipping", "sweeps"),
+    *("startup", "memory", "reverser", "reverser_ideal", "reverser_steps", "reverser_table"),
+    *("rods", "skipping", "sweeps"),
     *("slider_crank", "andrews", "pendulum", "windows", "chain", "stiff_chain", "chains"),
     *("flexible_pendulum", "spatial", "turns"),
 )

@@ -35,11 +35,12 @@ REPEATS = 5
 
 def main() -> None:
     """Print the table."""
-    print(f"  {'':48s} {'CPU s':>8s} {'rhs':>8s} {'us/rhs':>8s} {'unknowns':>9s} {'rows':>5s}")
+    print("| | CPU s | right-hand sides | us each | unknowns | rows |")
+    print("|---|---|---|---|---|---|")
     for label, (file, sets) in CASES.items():
         scenario = load(file, sets)
         mechanism = assemble(scenario)
         runs = [marched(scenario, mechanism)[1].statistics for _ in range(REPEATS + 1)][1:]
         cpu, looks = median(run["integration_cpu"] for run in runs), runs[0]["evaluations"]
-        print(f"  {label:48s} {cpu:8.4f} {looks:8d} {1e6 * cpu / looks:8.2f} "
-              f"{mechanism.model.n_v:9d} {mechanism.model.m:5d}")  # fmt: skip
+        print(f"| {label} | {cpu:.3f} | {looks} | {1e6 * cpu / looks:.1f} | "
+              f"{mechanism.model.n_v} | {mechanism.model.m} |", flush=True)  # fmt: skip

@@ -254,7 +254,7 @@ def test_one_inertia_is_too_few_in_a_tilted_frame():
 
 def test_the_documented_example():
     text = (Path(__file__).parents[1] / "docs/scenarios.md").read_text()
-    s = loads(text.split("## The frame of a file")[1].split("```yaml\n")[1].split("```")[0])
+    s = loads(text.split("## The frame of a file")[1].split("```yaml scene\n")[1].split("```")[0])
     assert assemble(s).stages is not None
     forward = s.frame.frame.turned((-1.0, 0.0, 0.0))  # x goes aft
     assert forward[2] == pytest.approx(sin(pi / 60))  # the nose is up

@@ -217,7 +217,7 @@ def test_slider_crank_of_other_periods(tolerance):
 
 def test_the_readme_scenario_runs(tmp_path):
     text = (FOLDER.parent / "README.md").read_text()
-    block = text.split("```yaml")[1].split("```")[0]
+    block = text.split("```yaml file=slider_crank.yaml")[1].split("```")[0]
     (tmp_path / "slider_crank.yaml").write_text(block)
     r = run(load(tmp_path / "slider_crank.yaml", ["solver.end=1 ms"]))
     assert r.outcome.status == "done"
@@ -252,7 +252,7 @@ def test_a_four_bar_begun_by_one_rate():
 def test_the_door_of_the_readme(tmp_path):
     """What its text says: the strike holds until the bolt is out, the door opens, and shuts."""
     text = (FOLDER.parent / "README.md").read_text()
-    block = text.split("```yaml")[2].split("```")[0]
+    block = text.split("```yaml scene")[1].split("```")[0]
     assert block.startswith("\n# door.yaml")
     (tmp_path / "door.yaml").write_text(block)
     r = run(load(tmp_path / "door.yaml"))

@@ -358,7 +358,7 @@ def test_places_are_points():
 
 def test_the_documented_example():
     text = (Path(__file__).parents[1] / "docs/scenarios.md").read_text()
-    example = text.split("## Templates")[1].split("```yaml\n")[1].split("```")[0]
+    example = text.split("## Templates")[1].split("```yaml scene\n")[1].split("```")[0]
     s = loads(example)
     assert {"port_door", "star_door"} <= set(s.bodies)
     assemble(s)

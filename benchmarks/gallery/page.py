@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from benchmarks.docs.made import MADE
+from benchmarks.docs.marks import END, digest, opening
 from trsim.scenario.shipped import FOLDERS, TEMPLATES, Template, template
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -16,6 +18,8 @@ it to that: by a closed form, or by an integration of its own. A picture shows t
 `python -m benchmarks.gallery` makes pictures and page again.
 
 {contents}
+
+{mark}
 """
 ONE = """
 ## {name}
@@ -31,11 +35,12 @@ ONE = """
 {text}"""
 
 
-def page() -> str:
-    """The whole page."""
+def page(mark: str = "") -> str:
+    """The whole page; mark: the marker of its pictures (benchmarks/docs), as of now if none."""
+    mark = mark or opening("gallery", digest(MADE["gallery"].of))
     every = [template(name) for name in TEMPLATES]
     contents = "\n".join(f"* [{one.name}](#{one.name}): {one.title}" for one in every)
-    return TOP.format(contents=contents) + "".join(map(entry, every))
+    return TOP.format(contents=contents, mark=mark) + "".join(map(entry, every)) + f"\n{END}\n"
 
 
 def entry(one: Template) -> str:

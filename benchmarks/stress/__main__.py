@@ -7,6 +7,8 @@ import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
+from benchmarks.docs.made import MADE
+from benchmarks.docs.marks import digest
 from benchmarks.measure import ROOT
 from benchmarks.stress.cells import CASES, Case, cases
 from trsim.version import __version__
@@ -37,13 +39,14 @@ def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else CASES
     FILE.parent.mkdir(parents=True, exist_ok=True)
     every = list(cases(count))
+    sources = digest(MADE["stress"].of)
     left = [case for case in every if case.name not in known(FILE)]
     print(f"{len(every)} cases, {len(left)} left; {FILE.relative_to(ROOT)}", flush=True)
     started = time.monotonic()
     with ProcessPoolExecutor(WORKERS) as pool, FILE.open("a") as log:
         jobs = {pool.submit(answered, case): case for case in left}
         for k, job in enumerate(as_completed(jobs), 1):
-            cells = job.result()
+            cells = [{**cell, "from": sources} for cell in job.result()]
             log.write(json.dumps(cells) + "\n")
             log.flush()
             os.fsync(log.fileno())

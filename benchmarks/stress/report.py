@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.docs.marks import END, opening
 from benchmarks.measure import ROOT
 from benchmarks.stress.cells import METHODS, SYSTEMS
 from benchmarks.stress.judge import CONVERGED, REFUSED, SAID_SO, UNJUDGED, WRONG
@@ -65,7 +66,7 @@ def write(cells: list[Cell], commit: str) -> None:
         speed=counted(cells, "speed", levels(cells, "speed")),
         friction=counted(cells, "friction", levels(cells, "friction")),
         restitution=counted(cells, "restitution", levels(cells, "restitution")),
-        reasons=reasons(cells), wrong="\n".join(
+        mark=marker(cells), end=END, reasons=reasons(cells), wrong="\n".join(
             f"* {c['case']}, {c['method']} at {c['setting']:g}: peaks off by "
             f"{100 * c['peak_error']:.2g} %, path by {c['path_error']:.2g}, "
             f"horizon {c['horizon']:.2f} of the run"
@@ -73,6 +74,12 @@ def write(cells: list[Cell], commit: str) -> None:
     )  # fmt: skip
     DOC.write_text(text)
     draw(cells, MAP)
+
+
+def marker(cells: list[Cell]) -> str:
+    """The first marker (benchmarks/docs); no digest where cells are of different sources."""
+    made = {cell.get("from", "") for cell in cells}
+    return opening("stress", made.pop() if len(made) == 1 and "" not in made else "0" * 12)
 
 
 def draw(cells: list[Cell], path: Path) -> None:
@@ -112,7 +119,7 @@ def draw(cells: list[Cell], path: Path) -> None:
 
 DOC_TEXT = """# Stress: contact far from comfortable
 
-`make stress` runs {n} cells: {cases} cases, each by five methods; it goes on where it was ended.
+`make stress` runs {n} cells: {cases} cases, each by five methods; rerun it to resume.
 Cases: clearance 1 µm to 5 mm, restitution 0 to 1, friction 0 to 1, speed 0.01 to 10 m/s, contact
 stiffness 1/1000 to 1000 times that of steel, every level equally often in each of five mechanisms:
 the reverser from before the touch of its lug with clearance at one or two pins, the same with
@@ -129,6 +136,8 @@ must agree to 2 %.
 * **said so**: ended `failed` with a reason, or done with a warning that the energy book is open
 * **unjudged**: done, but no other method got through at the tighter tolerance
 * **WRONG**: done without a word, and not within 2 %
+
+{mark}
 
 {counts}.  Version {commit}.  Errors of the peaks of what was judged: median {median:.1e}, 95 %
 below {most:.1e}, worst {worst:.1e}; {chaotic:.0%} of these runs part from their twin before their
@@ -157,4 +166,6 @@ end.
 ## Wrong
 
 {wrong}
+
+{end}
 """

@@ -4,13 +4,14 @@ import csv
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from tests import small
 from tests.report.test_figures import drawn
 from trsim.analyse import precision
 from trsim.analyse.precision import Setting, Study
 from trsim.analyse.trajectory import problem
-from trsim.report.precision import draw, figure
+from trsim.report.precision import decades, draw, figure
 from trsim.report.style import look
 from trsim.scenario.load import loads
 
@@ -56,3 +57,14 @@ def test_a_study_in_which_all_fail_is_drawn(study, tmp_path):
     failed = study.points[-1:]
     alone = Study("", study.reference, failed, precision.slopes(failed, study.reference))
     assert len(draw(alone, tmp_path)) == 2
+
+
+def test_axes_without_points():
+    """Peaks that are all right to the last bit have no place on logarithmic axes."""
+    axes = Figure().subplots()
+    axes.set(xscale="log", yscale="log")
+    decades(axes)
+    before = axes.get_xlim()
+    axes.plot([3e-5, 2e-3], [1.0, 2.0])
+    decades(axes)
+    assert axes.get_xlim() == pytest.approx((1e-5, 1e-2)) and before != axes.get_xlim()

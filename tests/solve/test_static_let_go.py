@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+import trsim
 from tests.solve.test_static_path import events, path
 
 G = 9.81
@@ -113,3 +114,15 @@ events: {let_go: {when: x, value: 0.5, do: {release: [hand]}}}
     r = path(text)
     assert r.outcome.status == "released" and "nothing holds it" in r.outcome.reason
     assert r["hand.force"][-1] == pytest.approx(-5, abs=1e-9)
+
+
+@pytest.mark.filterwarnings("ignore::trsim.TrsimWarning")
+def test_the_run_of_a_file_ends_released(tmp_path):
+    """It is written whole, with what speaks against believing it."""
+    file = tmp_path / "rod.yaml"
+    text = rod().replace("[0.01, 0.02, 0.05]", "0.05")
+    text += f"gravity: [0, -{G}]\nsolver: {{method: static_path, end: 1 s}}\n"
+    file.write_text(text, encoding="utf-8", newline="\n")
+    result = trsim.run(file, tmp_path / "rod.h5")
+    assert result.status == "released"
+    assert result["turn"][-1] == pytest.approx(rests(), abs=1e-8)

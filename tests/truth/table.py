@@ -7,6 +7,9 @@ from typing import Any
 
 import yaml
 
+from benchmarks.docs.made import MADE
+from benchmarks.docs.marks import END, digest_at, opening
+
 from .families import INVALID, RIGID, TIGHT_RUN
 from .judge import BROKEN, CRASH, REFUSED, RIGHT, TOLD, UNJUDGED, WRONG
 from .ledger import ROOT, known
@@ -134,11 +137,17 @@ def still_open(lines: list[dict[str, Any]]) -> str:
     return "\n".join(f"* `{x['family']} {x['seed']}`: {x['note']}" for x in left) or "None."
 
 
+def marker(commit: str) -> str:
+    """The first marker of what was measured with the seeds of a commit (benchmarks/docs)."""
+    return opening("truth", digest_at(MADE["truth"].of, commit), commit)
+
+
 def write(file: Path) -> Path:
     """The page of one ledger."""
     lines = list(known(file).values())
     parts = [
         HEAD,
+        marker(file.stem) + "\n",
         summary(lines, file.stem),
         table(lines),
         "\n## By method\n",
@@ -153,7 +162,7 @@ def write(file: Path) -> Path:
         reasons(lines, (TOLD,)),
         "\n## Not judged\n\nThe reference itself could not tell, or the horizon is at the start.\n",
         reasons(lines, (UNJUDGED,)),
-        "",
+        f"\n{END}\n",
     ]
     DOC.write_text("\n".join(parts))
     return DOC

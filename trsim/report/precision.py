@@ -90,10 +90,10 @@ def decades(axes: Any) -> None:
     from matplotlib.ticker import NullFormatter
 
     axes.xaxis.set_minor_formatter(NullFormatter())
-    low, high = np.log10(axes.dataLim.intervalx)
-    if np.isfinite(low) and np.isfinite(high):
-        low = np.floor(low)
-        axes.set_xlim(10.0**low, 10.0 ** max(np.ceil(high), low + 1.0))
+    low, high = axes.dataLim.intervalx
+    if 0.0 < low <= high < np.inf:  # else nothing is shown
+        low = np.floor(np.log10(low))
+        axes.set_xlim(10.0**low, 10.0 ** max(np.ceil(np.log10(high)), low + 1.0))
 
 
 def shown(p: "Point", field: str) -> bool:

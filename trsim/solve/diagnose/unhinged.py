@@ -11,6 +11,8 @@ from trsim.solve.march.record import Record
 
 def of_hinges(mechanism: Mechanism, r: Record) -> Iterator[str]:
     """Each of them as the run ended, and what to do."""
+    if not len(r.stage):  # of a static path without phases: it lets go of drives alone
+        return
     for (section, name), angle in mechanism.stages.without_hinge(r.stage):
         joint = angle.joint
         what = f"joints.{joint}: its lock" if section == "events" else f"{section}.{name}:"

@@ -1,0 +1,153 @@
+"""What is measured in the docs: the command that prints it, and the sources it depends on."""
+
+from typing import Literal, NamedTuple
+
+# tables: what the command prints takes the place of what is there.  page: the command writes it.
+# copied: its numbers stand beside words and older numbers, where somebody has to put them
+Way = Literal["tables", "page", "copied"]
+
+
+class Made(NamedTuple):
+    """An entry; without `asked`, `make docs` makes it wherever it is stale."""
+
+    command: str
+    of: tuple[str, ...]
+    way: Way = "copied"
+    asked: str = ""  # why it is only made by its name
+
+
+SOLVER = ("trsim/laws", "trsim/elements", "trsim/assemble", "trsim/solve")
+REVERSER = ("scenarios/thrust_reverser",)
+DOOR = ("scenarios/crew_door",)
+BENCH = ("benchmarks/measure.py", "benchmarks/work_precision.py")
+TIMES = "it measures times and needs a quiet machine"
+HOURS = "it takes hours"
+HAND = "its numbers are copied by hand"
+
+
+def bench(name: str, *of: str, way: Way = "copied", asked: str = TIMES) -> Made:
+    """A module of benchmarks."""
+    file = f"benchmarks/{name}.py"
+    return Made(f"python -m benchmarks {name}", (*SOLVER, *BENCH, file, *of), way, asked)
+
+
+def tested(*names: str, of: tuple[str, ...] = ()) -> Made:
+    """Numbers that tests print."""
+    files = tuple(f"tests/{name}.py" for name in names)
+    return Made(f"python -m pytest -s {' '.join(files)}", (*SOLVER, *files, *of), "copied", HAND)
+
+
+MADE: dict[str, Made] = {
+    "reference": Made(
+        "python -m benchmarks.docs.reference",
+        ("trsim/elements", "trsim/scenario", "trsim/units.py", "benchmarks/docs/reference.py"),
+        "page",
+    ),
+    "gallery": Made(
+        "python -m benchmarks.gallery",
+        ("benchmarks/gallery", "trsim/report/animation", "trsim/scenario/shipped.py",
+         "scenarios/gallery"),
+        "page",
+        "it draws twenty pictures",
+    ),
+    "truth": Made("make truth", (*SOLVER, "tests/truth"), "page", HOURS),
+    "stress": Made("make stress", (*SOLVER, "benchmarks/stress"), "page", HOURS),
+    "turns": bench("turns", way="tables", asked=""),
+    "reverser_ideal": bench("reverser_ideal", *REVERSER, way="tables", asked=""),
+    "reverser_table": bench("reverser_table", *REVERSER, way="tables", asked=""),
+    "reverser_steps": bench("reverser_steps", *REVERSER, way="tables", asked=""),
+    "skipping": bench("skipping", *REVERSER, way="tables"),
+    "slider_crank": bench("slider_crank", "benchmarks/minimal.py"),
+    "reverser": bench("reverser", *REVERSER),
+    "rods": bench("rods", *REVERSER),
+    "spatial": bench("spatial", *REVERSER),
+    "fit_spatial": Made(
+        "python -m benchmarks.fit_spatial",
+        (*SOLVER, "benchmarks/fit_spatial.py", *REVERSER),
+        asked=HAND,
+    ),
+    "peers": Made(
+        "python -m benchmarks andrews pendulum windows chain slider_crank",
+        (*SOLVER, *BENCH, "benchmarks/problems.py", "benchmarks/peers", "benchmarks/windows.py",
+         "benchmarks/chain.py", "benchmarks/andrews.py", "benchmarks/pendulum.py"),
+        asked=TIMES,
+    ),
+    "against": Made(
+        "python -m benchmarks.against FOLDER", (*SOLVER, "benchmarks/against.py"), asked=TIMES
+    ),
+    "chain": bench("chain"),
+    "chains": bench("chains"),
+    "windows": bench("windows"),
+    "flexible_pendulum": bench("flexible_pendulum"),
+    "sweeps": bench("sweeps", "trsim/sweeps"),
+    "startup": bench("startup", "trsim/kernels", "trsim/cli"),
+    "certify": tested("cli/test_certify"),
+    "user_events": tested("solve/test_user_events"),
+    "sections": tested("solve/test_sections", "analyse/test_section"),
+    "norm": tested("solve/test_norm"),
+    "works": tested("solve/test_works"),
+    "spatial_reverser": tested("solve/test_spatial_reverser", of=REVERSER),
+    "beams": tested("solve/test_beams_at_rest", "solve/test_beams_moving"),
+    "lyapunov": Made(
+        "python -m pytest -s tests/analyse/test_lyapunov.py",
+        ("tests/analyse/test_lyapunov.py", "trsim/analyse/lyapunov.py",
+         "trsim/analyse/embedding.py", "trsim/analyse/scaling.py", "trsim/analyse/growth.py"),
+        asked=HAND,
+    ),
+    "paper": Made("make paper", (*SOLVER, *REVERSER, "trsim/studies/thrust_reverser"), asked=HOURS),
+    "jam": Made(
+        "trsim sweep scenarios/thrust_reverser/spatial_jam.yaml -o runs/spatial_jam",
+        (*SOLVER, *REVERSER),
+        asked=HAND,
+    ),
+    "tolerances": Made("make tolerances", (*SOLVER, *REVERSER), asked=HOURS),
+    "door": Made("make door", (*SOLVER, *DOOR, "trsim/studies/crew_door"), asked=HOURS),
+    "release": Made(
+        "make release-check", ("trsim/store", "trsim/sweeps", "trsim/cli", "tests/store",
+                               "tests/sweeps", "tests/cli"), asked=HOURS),
+    "portable": Made("make portable", (*SOLVER, "tests/portable"), asked=HOURS),
+    "tutorial": Made(
+        "python -m benchmarks.gallery first_mechanism",
+        ("docs/first_mechanism.md", "benchmarks/gallery", "trsim/report"),
+        "page",
+        "it draws pictures",
+    ),
+}  # fmt: skip
+
+# heads of tables that are not measured: words, keys, options, units
+LISTS: dict[str, tuple[str, ...]] = {
+    "theory.md": ("| law | chi |",),
+    "why_did_my_run_fail.md": (
+        "| code | what it means | what to do |",
+        "| it says | why | what to do |",
+        "| it says | what to do |",
+    ),
+    "README.md": (
+        "| read | for |",
+        "| YAML | kernel | |",
+    ),
+    "architecture.md": (
+        "| record | what it holds |",
+        # of a design that is gone, and cannot be measured again
+        "| how the arrays reach the code | us per evaluation | compiling |",
+    ),
+    "commands.md": (
+        "| command | what |",
+        "| option | what it gives |",
+        "| ending | what |",
+        "| code | meaning |",
+    ),
+    "crew_door.md": ("| file | what |",),
+    "extending.md": ("| what | files new | files changed | lines |",),
+    "install.md": ("| system | what was run |",),
+    "numerics.md": ("| method | order | error estimate | dense output |",),
+    "python.md": ("| class | exit code of the command | |",),
+    "scenarios.md": (
+        "| section | what |",
+        "| key | what |",
+        "| type | keys | coordinate |",
+        "| type | keys | relation |",
+        "| type | keys |",
+    ),
+    "studies.md": ("| word | number |",),
+}
