@@ -126,3 +126,27 @@ def test_friction_turns_where_a_drive_goes_back_between_rows(word):
     r = path(RUBS, every=0.01, motion=f'{word}: "{motion[word]}"', end=0.03)
     rub = 0.2 * M * G * 0.01
     assert peaks(r, "rub.force")[[0, 2]] == pytest.approx([rub, -rub], rel=ENOUGH)
+
+
+@pytest.mark.parametrize("every", [0.01, 0.1])
+def test_extremes_between_the_looks_at_a_polynomial(every):
+    """A force that rises and falls four times, 20 sin(60 x) exp(-x), at places of 10 mm."""
+    from scipy.optimize import minimize_scalar
+
+    r = run(f"""
+bodies: {{box: {{mass: 2, inertia: 1}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, box], axis: [1, 0, 0]}}}}
+drives: {{jack: {{joint: slide, velocity: 0.1}}}}
+forces: {{wave: {{type: joint_spring, joint: slide, elastic: "20*sin(60*stretch)*exp(-stretch)"}}}}
+solver: {{method: static_path, end: 4}}
+output: {{every: {every}}}
+""")
+    force = lambda x: 20 * np.sin(60 * x) * np.exp(-x)  # noqa: E731
+    top, bottom = (
+        side * minimize_scalar(lambda x, side=side: side * force(x), bounds=within,
+                               method="bounded", options={"xatol": 1e-10}).fun
+        for side, within in ((-1.0, (0.01, 0.04)), (1.0, (0.06, 0.1)))
+    )  # fmt: skip
+    high, _, low, _ = peaks(r, "jack.force")
+    assert high == pytest.approx(top, abs=ENOUGH * (top - bottom))
+    assert low == pytest.approx(bottom, abs=ENOUGH * (top - bottom))

@@ -369,3 +369,32 @@ def test_a_start_at_rest_and_a_second_static_phase_are_those_of_one():
     assert len(one.t) == len(two.t)
     for name in ("height", "height.rate", "jack.force", "energy.work.drives"):
         assert two[name] == pytest.approx(one[name], abs=1e-7), name
+
+
+@pytest.mark.parametrize("begin", ["solver: {end: 4, method: static_path}", "phases:"])
+def test_a_force_that_passes_a_value_and_comes_back_between_rows(begin):
+    """A spring with a hump of 50 N at 0.12 m, 10 mm wide, and rows 50 mm apart."""
+    hump = BOX.replace("100*stretch", "100*stretch + 50*exp(-((stretch - 0.12)/0.005)**2)")
+    hump = hump.replace("10 ms", "0.5 s")
+    hump = hump.replace("velocity: 0}", "velocity: 0.1}").replace(f"-{G}", "0")
+    if begin == "phases:":
+        r = run(
+            hump + "  - {name: up, static: true, until: {when: jack.force, value: 60}, for: 3}\n"
+        )
+    else:
+        events = "events: {high: {when: jack.force, value: 60, do: {end: true}}}\n"
+        hump = hump.replace("solver: {end: 3 s, tolerance: 1e-10}", begin)
+        r = run(hump.replace("phases:\n", events))
+    there = brentq(lambda x: 100 * x + 50 * np.exp(-(((x - 0.12) / 0.005) ** 2)) - 60, 0.11, 0.12)
+    assert r.outcome.time == pytest.approx(there / 0.1, abs=1e-9)
+
+
+def test_what_a_compliant_drive_moves_at_a_steady_speed():
+    """It goes at the speed of the drive, K f = weight behind it, and goes on so in motion."""
+    soft = BOX.replace(
+        "velocity: 0}", "velocity: 0.2, compliance: {stiffness: 500, damping: 3}}"
+    ).replace('"100*stretch"', "0")
+    r = run(soft + "  - {name: lift, static: true, for: 1}\n  - {name: on, for: 0.5}\n")
+    assert r["height"] == pytest.approx(0.2 * r.t - M * G / 500, abs=1e-8)
+    assert r["height.rate"] == pytest.approx(0.2, abs=1e-7)
+    assert r.outcome.statistics["steps"] < 1000

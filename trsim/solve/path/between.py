@@ -26,7 +26,7 @@ FEWEST = 4  # of a piece: fewer say too little, and more are solved for
 LOOKS = 32  # parts of the way between two places at which a polynomial is looked at
 TRIES = 10  # places solved for between two neighbours
 SMALL = 0.01  # of what may be missed of the largest channel of its kind: less is no extreme
-NEAR = 1e-3  # of the way between two places: nearer to a known one there is nothing new
+NEAR = 1e-4  # of the way between two places: nearer to a known one there is nothing new
 UNSURE = 2.0  # times the last term: what a polynomial is off by
 ROUNDING = 1e-13  # of the largest of its kind: differences of places in balance
 
@@ -125,20 +125,31 @@ class Between:
         others.sort(key=lambda one: abs(one.place.t - 0.5 * (a + b)))
         nodes = (nodes + others)[: max(POINTS, len(nodes))]
         times = np.array([one.place.t for one in nodes])
-        x = np.linspace(a, b, LOOKS + 1)[1:-1]
+        x = np.linspace(a, b, LOOKS + 1)
         known = np.array([a, b, *(one.place.t for one in inside)])
-        away = np.abs(x[:, None] - known).min(axis=1) > NEAR * (b - a)
         value, doubt = newton(times, np.array([one.values for one in nodes]), x)
         high, low = self.results.peak[0, self.sought], self.results.peak[2, self.sought]
         of_kind = self.largest[self.kin] / self.lever
         enough = self.missed * np.maximum(high - low, SMALL * of_kind) + ROUNDING * of_kind + 1e-300
-        above = (value + doubt - high) / enough
-        below = np.where(low > self.least, (low - value + doubt) / enough, -1.0)
-        beyond = np.maximum(above, below).max(axis=1, initial=-1.0)
-        beyond = np.where(away, beyond, -1.0)
+        up, down = tops(x, value), tops(x, -value)
+        above = (up[1] + doubt[1:-1] - high) / enough
+        below = np.where(low > self.least, (low + down[1] + doubt[1:-1]) / enough, -1.0)
+        at = np.array([up[0], down[0]])
+        away = np.abs(at[..., None] - known).min(axis=-1) > NEAR * (b - a)
+        beyond = np.where(away, np.array([above, below]), -1.0)
         if not beyond.size or not beyond.max() > 1.0:
             return None
-        return float(x[int(np.argmax(beyond))])
+        return float(at.ravel()[int(np.argmax(beyond))])
+
+
+def tops(x: Array, values: Array) -> tuple[Array, Array]:
+    """Where values (times, channels) are largest around each time but the first and the last, and
+    how large: on a top at that of the parabola through three, else there."""
+    before, there, after = values[:-2], values[1:-1], values[2:]
+    rise, bend = after - before, 2.0 * there - before - after
+    top = (there >= before) & (there >= after) & (bend > 0.0)
+    off = np.where(top, 0.5 * rise / np.where(top, bend, 1.0), 0.0)
+    return x[1:-1, None] + off * (x[1] - x[0]), there + 0.25 * rise * off
 
 
 def newton(times: Array, values: Array, x: Array) -> tuple[Array, Array]:

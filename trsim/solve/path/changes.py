@@ -116,6 +116,12 @@ class Looks:
                 found.append((x - value, rate))
         return found
 
+    @property
+    def waiting(self) -> list[int]:
+        """Events that wait for a channel."""
+        waits = enumerate(zip(self.events, self.left, strict=True))
+        return [k for k, (event, left) in waits if event.kind == CHANNEL and left > 0]
+
     def hold(self, t: float, which: int) -> None:
         """Hold functions on the pieces they are on just after t; smooth tables that sensors read on
         none: their second derivatives jump, which Newton's method does not mind."""
@@ -266,6 +272,22 @@ def turns_through(
     top = g0 + x * (r0 + x * (a + x * b))
     arch = top - max(g0, g1)
     return bool(arch > FLATTEST * size and top > -NEARLY * arch)
+
+
+def bottoms(
+    times: list[float], values: list[dict[int, float]], side: dict[int, float]
+) -> list[float]:
+    """Where what is watched comes nearest to its value, of what is nearer at the second of three
+    times than at both others: the bottoms of parabolas."""
+    t0, t1, t2 = times
+    found = []
+    for k in values[0]:
+        x0, x1, x2 = (side[k] * one[k] for one in values)
+        if 0.0 < x1 < min(x0, x2):
+            back, ahead = (x1 - x0) / (t1 - t0), (x2 - x1) / (t2 - t1)
+            middle = (back * (t2 - t1) + ahead * (t1 - t0)) / (t2 - t0)  # the rate at t1
+            found.append(t1 - middle * (t2 - t0) / (2.0 * (ahead - back)))
+    return found
 
 
 def column_of(columns: dict[str, int], channel: str) -> int:

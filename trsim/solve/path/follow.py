@@ -27,7 +27,7 @@ from trsim.solve.outcome import Block, Outcome, new_record, settings, statistics
 from trsim.solve.path.balance import travel
 from trsim.solve.path.begin import begin, check
 from trsim.solve.path.between import Between
-from trsim.solve.path.changes import RUB, Change, Looks, stability
+from trsim.solve.path.changes import RUB, Change, Looks, bottoms, stability
 from trsim.solve.path.fold import fold
 from trsim.solve.path.let_go import Held, kept, why
 from trsim.solve.path.log import Log
@@ -47,6 +47,7 @@ SURE = 100.0  # times what full sliding takes, or further
 MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
 FULL = 1.0 - 1e-6  # of the largest friction there can be: less is no full sliding
 SEEN = 0.01  # of the path: in that time what slides goes further than full sliding takes
+PARTS = 8  # parts of a step in which channels that events watch are looked at
 AGAIN = 50  # changes at one place: it is none
 BLOCK = 500  # rows
 
@@ -102,6 +103,8 @@ class Path:
             changes = self.changed(trial)
             if changes and trial.t - place.t > SAME * self.end:
                 trial, changes = self.narrowed(place, trial, changes)
+            if self.looks.waiting and (inside := self.looked_inside(place, trial)):
+                trial, changes = self.narrowed(place, *inside)
             self.steps += 1
             long = trial.t - place.t
             corner = self.at_corner(place.t, trial.t)
@@ -249,6 +252,30 @@ class Path:
     def changed(self, place: Place) -> list[Change]:
         out = self.results.out(place, 0.0 * place.v) if self.hears else None
         return self.looks.changes(place, out, self.sense(place))
+
+    def looked_inside(self, place: Place, trial: Place) -> tuple[Place, list[Change]] | None:
+        """The first place inside a step at which a channel has passed what an event watches it
+        for, and what changes there."""
+        within = 2.0 * self.way(place.y, trial.y) + BESIDE
+        times, values = [place.t], [self.heard(place)]
+        for k in range(1, PARTS + 1):
+            at = place.t + k / PARTS * (trial.t - place.t)
+            there = self.reached(place, at, within) if k < PARTS else trial
+            if there is None:
+                continue
+            times, values = [*times[-2:], there.t], [*values[-2:], self.heard(there)]
+            dips = bottoms(times, values, self.looks.side) if len(times) == 3 else []
+            bottom = (self.reached(place, t, within) for t in dips)
+            inside = (p for p in (*bottom, there) if p is not None and p.t < trial.t)
+            for one in sorted(inside, key=lambda p: p.t):
+                if found := self.changed(one):
+                    return one, found
+        return None
+
+    def heard(self, place: Place) -> dict[int, float]:
+        """What events watch of channels, less its value, where they wait for it."""
+        values = self.looks.values(place, self.results.out(place, 0.0 * place.v))
+        return {k: values[k][0] for k in self.looks.waiting}
 
     def narrowed(
         self, place: Place, trial: Place, changes: list[Change]

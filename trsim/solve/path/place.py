@@ -278,7 +278,7 @@ class Equations:
         w, n = self.work, self.n
         found = np.zeros(n + self.m)
         g = np.zeros((2, n + self.m))
-        if self.mechanism.timed:
+        if self.mechanism.timed or self.states:
             h = self.small
             for k, dt in enumerate((h, -h)):
                 near = self.at_time(y, t, t + dt)
