@@ -406,7 +406,7 @@ def test_what_a_compliant_drive_moves_at_a_steady_speed():
     ("{when: height, value: -0.3, crosses: down}", 0.6),
 ])  # fmt: skip
 def test_a_value_on_the_way_to_the_balance_that_a_phase_begins_in(until, time):
-    """A box held at 0 m and let go in balance, 0.196 m down: it passes 0.1 m as the phase begins."""
+    """A box held at 0 m and let go in balance, 0.196 m down, passes 0.1 m as the phase begins."""
     r = run(
         BOX
         + f"""
