@@ -31,6 +31,7 @@ def shown(make) -> str:
     [
         ("speed*2", ["no parameter named 'speed'", "Known: t."]),
         ("2/12 mm/s", ["a unit stands behind one number: '2/12 mm/s'", "in SI"]),
+        ("0.9 m*cos(t)", ["a unit stands behind one number alone", "in SI", "{x: 0.9 m}"]),
         ("10*deg*t", ["no parameter named 'deg'", "is a unit", "{x: 10 deg}"]),
         ("sin(90 deg)", ["A unit cannot stand inside an expression", "{x: 90 deg}"]),
         ("2*3 mm/s", ["A unit cannot stand inside an expression", "{x: 3 mm/s}"]),

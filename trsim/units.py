@@ -252,6 +252,14 @@ def quantity(
     try:
         factor, _ = unit(rest)
     except UnitError as error:
+        if error.asked[1] in names or re.search(r"[A-Za-z_]\w*\s*\(", rest):  # 0.9 m*cos(a)
+            what = f"a unit stands behind one number alone: {described(text)}"
+            alone = re.split(r"[*/]", rest)[0].strip()
+            alone = alone if alone in {**BASE, **DERIVED} else ""
+            named = f"parameters: {{x: {f'{number} {alone}'.strip()}}}"
+            raise ScenarioError(
+                what, f"In an expression numbers are in SI, or named: `{named}`, then x*..."
+            ) from None
         raise no_unit(error.what, *error.asked, wanted) from None
     # decimal fractions are exact: 0.7 mm is the same number as 0.0007
     if isinstance(factor, Fraction) and 1e-99 < abs(value) < 1e99:

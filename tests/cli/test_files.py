@@ -49,6 +49,7 @@ def test_export_all(result, answer):
         (("stroke",), ["stroke [m]"]),
         (("B.force",), ["B.force.x [N]", "B.force.y [N]", "B.force.z [N]"]),
         (("B.force.y", "strok?"), ["B.force.y [N]", "stroke [m]"]),
+        (("B.force.y, strok?",), ["B.force.y [N]", "stroke [m]"]),
     ],
 )
 def test_export_some(patterns, columns, result, trsim):

@@ -72,6 +72,8 @@ def test_document(disc, answer):
         (("turned",), "'turned' does not say which number", "peak:turned"),
         (("trned",), "no number of a run: 'trned'", "KIND:OF"),
         (("peek:turned",), "no number of a run", "Did you mean 'peak'?"),
+        (("max:turned",), "no number of a run: 'max:turned'", "Write peak:turned."),
+        (("min:turned@0..1",), "no number of a run", "Write least:turned@0..1."),
         (("peak:trned",), "no channel named 'trned'", "Did you mean 'turned'?"),
         (("final:disc.position",), "3 components", "'disc.position.x'"),
         (("final:turned", "--unit", "mm"), "'mm' is no unit of final:turned", "rad"),

@@ -3,6 +3,7 @@
 import csv
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -434,8 +435,9 @@ def test_what_does_not_fit_is_refused(paths, tmp_path):
     (tmp_path / "plan.json").write_text("{}")  # the folder of a sweep
     with pytest.raises(UsageError, match="--sobol is not for result files"):
         analysed(paths, tmp_path / "o", Asked(sobol=("a:b",)))
-    with pytest.raises(UsageError, match="--spectrum is not for a sweep"):
+    with pytest.raises(UsageError, match="--spectrum is not for a sweep") as error:
         analysed([tmp_path], tmp_path / "o", Asked(spectrum=("stroke",)))
+    assert str(Path("cases") / "*.h5") in error.value.hint
     with pytest.raises(UsageError, match="not the only thing given"):
         analysed([tmp_path, *paths], tmp_path / "o", Asked())
     with pytest.raises(FileError, match="file"):

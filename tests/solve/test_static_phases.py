@@ -398,3 +398,39 @@ def test_what_a_compliant_drive_moves_at_a_steady_speed():
     assert r["height"] == pytest.approx(0.2 * r.t - M * G / 500, abs=1e-8)
     assert r["height.rate"] == pytest.approx(0.2, abs=1e-7)
     assert r.outcome.statistics["steps"] < 1000
+
+
+@pytest.mark.parametrize("until, time", [
+    ("{when: height, value: -0.1, crosses: down}", 0.1),
+    ("{when: height, value: -0.1, crosses: both}", 0.1),
+    ("{when: height, value: -0.3, crosses: down}", 0.6),
+])  # fmt: skip
+def test_a_value_on_the_way_to_the_balance_that_a_phase_begins_in(until, time):
+    """A box held at 0 m and let go in balance, 0.196 m down, passes 0.1 m as the phase begins."""
+    r = run(
+        BOX
+        + f"""
+  - {{name: hold, drive: {{jack: {{velocity: 0}}}}, for: 0.1}}
+  - {{name: rest, static: true, release: [jack], until: {until}, for: 0.5}}
+  - {{name: on, for: 0.1}}
+"""
+    )
+    (*_, (t, _, _), _) = told(r)
+    assert t == pytest.approx(time, abs=1e-9)
+    assert r["height"][-1] == pytest.approx(-M * G / 100, abs=1e-8)
+    assert energy_error(r) < 1e-8
+
+
+def test_an_event_that_lets_a_path_jump_over_the_end_of_its_phase():
+    r = run(
+        BOX.replace(
+            "phases:",
+            "events: {drop: {when: height, value: 0.05, times: 1, do: {release: [jack]}}}\nphases:",
+        )
+        + """
+  - {name: up, static: true, drive: {jack: {velocity: 0.1}},
+     until: {when: height, value: -0.1, crosses: down}, for: 2}
+  - {name: on, for: 0.1}
+"""
+    )
+    assert [(name, t) for t, name, _ in told(r)][2] == ("up.until", pytest.approx(0.5, abs=1e-9))

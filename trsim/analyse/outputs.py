@@ -62,6 +62,11 @@ def _no_kind(run: Run, word: str, name: str, kind: str) -> UsageError:
     if run.stores(name):
         what = f"{described(name)} does not say which number of the channel"
         return UsageError(what, f"Write peak:{name}, mean:{name} or final:{name}.")
+    if kind in MEANT and ":" in word:
+        return UsageError(
+            f"no number of a run: {described(word)}",
+            f"Write {MEANT[kind]}:{word[len(kind) + 1 :]}.",
+        )
     hint = known(kind, KINDS) if ":" in word else f"{FORM}  {known(name, run.names)}"
     return UsageError(f"no number of a run: {described(word)}", hint)
 
@@ -187,6 +192,8 @@ def _unit_of(run: Run, path: str) -> str:
 
 SHARES = ("flight", "contact", "following", "impacts", "onsets")
 WHOLE = ("summary", "solver")
+MEANT = {"max": "peak", "maximum": "peak", "min": "least", "minimum": "least", "average": "mean",
+         "end": "final", "last": "final"}  # fmt: skip
 KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
     "peak": partial(_extreme, LARGEST),
     "least": partial(_extreme, SMALLEST),

@@ -19,7 +19,9 @@ FORMATS = ("csv", "tsv", "xlsx", "parquet", "mat", "pvd")  # the last one is no 
 @click.option("--format", "form", type=click.Choice(FORMATS),
               help="Told by the ending of the file unless given.")  # fmt: skip
 @click.option("--csv", "as_csv", is_flag=True, help="The same as --format csv.")
-@click.option("--channels", multiple=True, metavar="PATTERN", help="For example 'B.*'; repeatable.")
+@click.option(
+    "--channels", multiple=True, metavar="PATTERN", help="For example 'B.*'; several by commas."
+)
 @framed
 def command(
     answer: Answer,
@@ -107,6 +109,7 @@ def streamed(answer: Answer, run: Any, names: list[str], form: str) -> None:
 def chosen(of: dict[str, str], patterns: tuple[str, ...]) -> list[str]:
     """The columns that fit a pattern, or whose channel does; `of`: the channel of each."""
     names = list(of)
+    patterns = tuple(one.strip() for several in patterns for one in several.split(","))
     if not patterns:
         return names
 

@@ -144,7 +144,8 @@ def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
         raise UsageError(what, "Report one sweep, or result files.")
     wrong = [name for name in (RUNS if studies else SWEEP) if getattr(asked, name)]
     if wrong:
-        of, rather = ("a sweep", "result files") if studies else ("result files", "a sweep")
+        files = f"result files, such as {Path(studies[0]) / 'cases' / '*.h5'}" if studies else ""
+        of, rather = ("a sweep", files) if studies else ("result files", "a sweep")
         raise UsageError(f"--{wrong[0]} is not for {of}", f"It is for {rather}.")
     if asked.over and not studies:
         raise UsageError("--over is not for result files", "It is for a sweep.")

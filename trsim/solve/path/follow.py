@@ -90,7 +90,7 @@ class Path:
         """Follow the path; its rows."""
         place = self.first()
         h, again, last = self.every, 0, -1.0
-        while place.t < self.end * (1.0 - SAME):
+        while not self.log.due and place.t < self.end * (1.0 - SAME):
             to = self.until(place.t, h)
             trial = self.reached(place, to)
             if trial is None or self.looks.passed_over(place, trial):

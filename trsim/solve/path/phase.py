@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import kinetic, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.switches import CHANNEL
+from trsim.assemble.switches import CHANNEL, TIME
 from trsim.assemble.tables import BAND_AT, VALUE_AT
 from trsim.elements.contract import (
     CONTACT,
@@ -36,6 +36,7 @@ from trsim.solve.march.load_steps import phase_of
 from trsim.solve.march.record import Buffers, Record
 from trsim.solve.outcome import Block, first_step
 from trsim.solve.path.begin import check
+from trsim.solve.path.changes import WATCH, Change
 from trsim.solve.path.follow import BESIDE, Path
 from trsim.solve.path.place import Place
 from trsim.solve.path.relax import relaxed
@@ -128,6 +129,8 @@ class PhasePath(Path):
             counts = event.phase in (-1, phase_of(mechanism, r)) and event.role != "stall"
             looks.left[k] = event.most - r.watch[k, rec.TIMES] if counts else 0.0
         self.log.hands_over = True
+        first_gap = len(work.contact)
+        self.seen = r.gap[first_gap : first_gap + len(looks.events), 0].copy()
         results.works[:] = y[first + work.n_v : first + work.n_v + N_BOOK]
         results.begun, results.zero = True, float(r.energy_0 + r.work_projection)
         self.zero, self.way_of_begin = results.zero, 0.0
@@ -148,7 +151,16 @@ class PhasePath(Path):
                  - self.begun_with)  # fmt: skip
         self.take_sides(place)
         self.begun_in = place
+        if self.way_of_begin > BESIDE:
+            self.jumped_over(place)
         return place
+
+    def jumped_over(self, place: Place) -> None:
+        """Let events happen whose values lie on the way to the balance it begins in."""
+        for k, (event, seen) in enumerate(zip(self.looks.events, self.seen, strict=True)):
+            side = self.looks.side[k]
+            if self.looks.left[k] > 0 and event.entry != TIME and side * seen < 0.0:
+                self.log.note(place, Change(WATCH, k, side))
 
     def last(self) -> Place:
         """The place it came to."""
@@ -186,10 +198,12 @@ class PhasePath(Path):
 
     def of_begin(self, moved: bool) -> Iterator[str]:
         """What is left out where a motion is put into balance."""
-        if moved or self.way_of_begin > BESIDE:
+        far = self.way_of_begin > BESIDE
+        if moved or far:
+            way = f"the mechanism moves by {self.way_of_begin:.3g} of its size, and " if far else ""
             yield (
-                f"phases.{self.name}: at t = {self.t0:.9g} s it begins in balance: the mechanism "
-                f"moves by {self.way_of_begin:.3g} of its size, and its motion is left out"
+                f"phases.{self.name}: at t = {self.t0:.9g} s it begins in balance: {way}its motion "
+                "is left out"
             )
 
     def numbers(self) -> dict[str, float]:
