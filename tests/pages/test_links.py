@@ -28,9 +28,9 @@ def dead(page, text: str) -> list[str]:
             continue
         name, _, anchor = link.partition("#")
         there = page.parent / name if name else page
-        if not there.exists():
-            wrong.append(link)
-        elif anchor and anchor not in anchors(text if not name else there.read_text("utf-8")):
+        if not there.exists() or (
+            anchor and anchor not in anchors(text if not name else there.read_text("utf-8"))
+        ):
             wrong.append(link)
     return wrong
 
