@@ -36,8 +36,11 @@ def make(name: str) -> None:
     entry = MADE[name]
     print(f"{name}: {entry.command}", flush=True)
     words = shlex.split(entry.command)
-    if words[0] == "python":
-        words[0] = sys.executable
+    if "FOLDER" in words:
+        print("  type it by hand, with the folder of an older tree; then --copied")
+        return
+    if words[0] in ("python", "trsim"):
+        words[:1] = [sys.executable] if words[0] == "python" else [sys.executable, "-m", "trsim"]
     printed = marks.printed(words).decode()
     KEPT.mkdir(parents=True, exist_ok=True)
     (KEPT / f"{name}.txt").write_text(printed, encoding="utf-8", newline="\n")

@@ -18,7 +18,7 @@ from PIL import Image
 from pygltflib import GLTF2
 
 from benchmarks.gallery import still
-from benchmarks.gallery.page import DOCS, PAGE, PICTURES, page
+from benchmarks.gallery.page import DOCS, PAGE, PICTURES, marker, page
 from benchmarks.gallery.tutorial import follow, pictures
 from trsim.analyse.plotted import plotted, rows
 from trsim.cli import main
@@ -197,4 +197,5 @@ if __name__ == "__main__":
         os.chdir(there)
         for name in asked:
             tutorial() if name == FIRST else make(name)
-    PAGE.write_text(page(), encoding="utf-8", newline="\n")
+    every = {*TEMPLATES} <= {*asked}  # else the marker tells of the pictures that stay
+    PAGE.write_text(page("" if every else marker()), encoding="utf-8", newline="\n")

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from benchmarks.docs.made import MADE
-from benchmarks.docs.marks import END, digest, opening
+from benchmarks.docs.marks import END, digest, marked, opening
 from trsim.scenario.shipped import FOLDERS, TEMPLATES, Template, template
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -41,6 +41,12 @@ def page(mark: str = "") -> str:
     every = [template(name) for name in TEMPLATES]
     contents = "\n".join(f"* [{one.name}](#{one.name}): {one.title}" for one in every)
     return TOP.format(contents=contents, mark=mark) + "".join(map(entry, every)) + f"\n{END}\n"
+
+
+def marker() -> str:
+    """The marker that stands on the page."""
+    text = PAGE.read_text(encoding="utf-8")
+    return text.splitlines()[marked(PAGE, text)[0].line - 1]
 
 
 def entry(one: Template) -> str:
