@@ -241,3 +241,24 @@ def test_friction_on_a_plane_in_two_directions():
     assert r["x.force"] == pytest.approx(force[0], abs=1e-3 * 3)
     assert r["y.force"] == pytest.approx(force[1], abs=1e-3 * 3)
     assert r["touch.force"][:, :2] == pytest.approx(-force.T, abs=1e-3 * 3)
+
+
+@pytest.mark.parametrize("slower", [1, 30, 1000])
+def test_what_slides_slowly_rubs_in_full_from_the_start(slower):
+    """A slide that a coupler moves so many times slower than the driven one, pressed by 40 N."""
+    r = path(f"""
+bodies:
+  fast: {{mass: 1, inertia: 1}}
+  slow: {{mass: 1, inertia: 1, at: [0, 1]}}
+joints:
+  quick: {{type: prismatic, bodies: [ground, fast], axis: [1, 0, 0]}}
+  lazy: {{type: prismatic, bodies: [ground, slow], axis: [1, 0, 0], at: [0, 1]}}
+  gear: {{type: coupler, joints: [quick, lazy], coefficients: [1, {-slower}]}}
+drives: {{pusher: {{joint: quick, position: 0.05*t}}}}
+sensors: {{x: {{joint: lazy}}}}
+forces:
+  press: {{type: applied_load, body: slow, force: 40, direction: [0, -1, 0]}}
+  rub: {{type: joint_friction, joint: lazy,
+        friction: {{law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1 mm/s}}}}
+""")
+    assert np.abs(r["pusher.force"]) == pytest.approx(0.3 * (40 + G) / slower, rel=1e-6)

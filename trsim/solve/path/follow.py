@@ -44,6 +44,7 @@ SAME = 1e-13  # of the path: where a change is, and whether it has been reached
 STEADY = 0.2  # of the time between rows: places that are nearer do not tell what inertia would do
 FIRST = 1e-4  # of the time between rows: how far ahead the direction of the start is taken
 SURE = 100.0  # times what full sliding takes, or further
+FASTER = 1e4  # times the way: what slides that much slower than the rest slides in full, too
 MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
 FULL = 1.0 - 1e-6  # of the largest friction there can be: less is no full sliding
 SEEN = 0.01  # of the path: in that time what slides goes further than full sliding takes
@@ -177,7 +178,7 @@ class Path:
                 break
             h *= 10.0
         y = place.y.copy()
-        y[first] = ahead[first]
+        y[first] = FASTER * ahead[first]
         eq.frozen = True
         again = eq.solved(self.t0, y, found[1], None)
         at_start = eq.place(self.t0, *again) if again is not None else None
