@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
-PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
+PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal --durations 10
 
 .PHONY: demo paper door tolerances gallery docs docs-check test release-check coverage portable elsewhere lint bench stress truth mutants wheel clean
 
@@ -62,7 +62,7 @@ portable: .venv/developer
 
 # commands, sweeps, files and machine code without what only POSIX has: fcntl, fork, signals and others
 elsewhere: .venv/developer
-	$(BIN)/python -m tests.elsewhere --numprocesses auto --dist worksteal
+	$(BIN)/python -m tests.elsewhere --numprocesses auto --dist worksteal --durations 10
 
 lint: .venv/developer
 	$(BIN)/ruff format --check $(SOURCES)

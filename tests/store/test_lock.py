@@ -5,13 +5,13 @@ import shutil
 import signal
 import subprocess
 import time
-from types import SimpleNamespace
 
 import pytest
 
 from tests import small
 from tests.elsewhere import needs
 from tests.store import outside
+from trsim import system
 from trsim.cli import main
 from trsim.errors import FileError
 from trsim.store import lock
@@ -195,18 +195,18 @@ def test_a_lock_is_that_of_the_file_that_has_the_name(tmp_path, monkeypatch):
     for removed in (0, 1):
         handles, locked = [], lock._lock
 
-        def opened(*rest, handles=handles, open_=os.open):
-            assert len(handles) < 3, "it never ends"
+        def opened(*rest, handles=handles, open_=system.opened):
             handles.append(open_(*rest))
             return handles[-1]
 
         def taken(handle, final, shared=False, handles=handles, locked=locked, removed=removed):
+            assert 0 < len(handles) < 3, "it never ends"
             if len(handles) <= removed:
                 (tmp_path / "x.h5.lock").unlink()
             locked(handle, final, shared)
 
         with monkeypatch.context() as patch:
-            patch.setattr(lock, "os", SimpleNamespace(**{**vars(os), "open": opened}))
+            patch.setattr(system, "opened", opened)
             patch.setattr(lock, "_lock", taken)
             handle = lock._held(tmp_path / "x.h5.lock", tmp_path / "x.h5")
         assert len(handles) == 1 + removed and handle == handles[-1]
