@@ -467,6 +467,16 @@ class Path:
         kept.rows, kept.steps, kept.recorded = [], [], []
         self.log.events = []
 
+    def numbers(self) -> dict[str, float]:
+        """What statistics tell of it: its lowest eigenvalue, its largest ratio of inertia."""
+        found = {}
+        if np.isfinite(self.lowest[0]):
+            found["lowest_eigenvalue"], found["lowest_eigenvalue_time"] = self.lowest
+        if ratios := self.results.ratios():
+            _, ratio, when = max(ratios, key=lambda one: one[1])
+            found["inertia_ratio"], found["inertia_ratio_time"] = ratio, when
+        return found
+
     def outcome(self, cpu: float) -> Outcome:
         """How it ended, and what is told of it."""
         work, kept = scene(self.mechanism.model), self.results
@@ -478,11 +488,6 @@ class Path:
             r.peak[k] = kept.peak[k]
         numbers = statistics(r, work, self.begun, cpu)
         numbers["evaluations"] = int(self.eq.work.status[1])
-        if np.isfinite(self.lowest[0]):
-            numbers["lowest_eigenvalue"], numbers["lowest_eigenvalue_time"] = self.lowest
-        ratios = kept.ratios()
-        if ratios:
-            _, ratio, when = max(ratios, key=lambda one: one[1])
-            numbers["inertia_ratio"], numbers["inertia_ratio_time"] = ratio, when
+        numbers |= self.numbers()
         return Outcome(self.log.status, self.log.reason, float(r.t), numbers, kept.peak.T.copy(),
                        r, self.begun, self.log.fired, said=tuple(self.log.said()))  # fmt: skip

@@ -40,6 +40,7 @@ from trsim.solve.path.changes import WATCH, Change
 from trsim.solve.path.follow import BESIDE, Path
 from trsim.solve.path.place import Place
 from trsim.solve.path.relax import relaxed
+from trsim.solve.rest import without_rates
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -113,8 +114,7 @@ class PhasePath(Path):
 
     def __init__(self, scenario: Any, mechanism: Mechanism, work: Scene, r: Record) -> None:
         there = mechanism.in_stage(r.stage, r.left_out)
-        y, first = r.y.copy(), work.n_q
-        y[first : first + work.n_v] = 0.0
+        y, first = without_rates(mechanism, r.y), work.n_q
         begun = SimpleNamespace(y=y, mem=r.mem.copy(), branch=r.branch.copy())
         super().__init__(scenario, there, begun, float(r.t))
         self.name = mechanism.stages.switches.phases[phase_of(mechanism, r)]
@@ -147,8 +147,8 @@ class PhasePath(Path):
             self.log.falls.clear()
             place = super().first()
         self.way_of_begin = self.way(self.begun_at, place.y)
-        self.add(place.y, total_energy(self.eq.work, place.t, still(self.eq.work, place.y))
-                 - self.begun_with)  # fmt: skip
+        rests = without_rates(self.mechanism, place.y)
+        self.add(place.y, total_energy(self.eq.work, place.t, rests) - self.begun_with)
         self.take_sides(place)
         self.begun_in = place
         if self.way_of_begin > BESIDE:
@@ -205,23 +205,6 @@ class PhasePath(Path):
                 f"phases.{self.name}: at t = {self.t0:.9g} s it begins in balance: {way}its motion "
                 "is left out"
             )
-
-    def numbers(self) -> dict[str, float]:
-        """What the statistics of the run tell of it."""
-        found = {}
-        if np.isfinite(self.lowest[0]):
-            found["lowest_eigenvalue"], found["lowest_eigenvalue_time"] = self.lowest
-        if ratios := self.results.ratios():
-            _, ratio, when = max(ratios, key=lambda one: one[1])
-            found["inertia_ratio"], found["inertia_ratio_time"] = ratio, when
-        return found
-
-
-def still(work: Scene, y: Array) -> Array:
-    """A state without velocities."""
-    y = y.copy()
-    y[work.n_q : work.n_q + work.n_v] = 0.0
-    return y
 
 
 def hand_back(path: PhasePath, work: Scene, r: Record, b: Buffers) -> None:
