@@ -2,59 +2,39 @@
 
 Mutations are drawn uniformly over the lines of six rooms, and each is tried with the tests nearest
 to it first, until one fails or its time is over.  What survives that time counts as a survivor,
-though tests that were left might have noticed it.  Goes on where it was ended, with the same
-sources and tests.
+though tests that were left might have noticed it.  Goes on where it was ended; what
+is known is kept in verdicts.jsonl.
 """
 
 import argparse
-import json
 import os
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from .drawn import ROOT, digest, drawn
+from .drawn import ROOT, drawn
 from .equivalent import EQUIVALENT
 from .operators import Mutation
 from .trial import Times, Tree, fresh, tried
+from .verdicts import KILLED, Verdicts
 
 FOLDER = ROOT / "runs" / "mutants"
 COUNT = 300
 ENOUGH = 0.8  # of those that are not equivalent die
 SECONDS = 1800.0  # for one mutation
 
-Key = tuple[str, int, str, str]
 
-
-def key(one: Mutation) -> Key:
-    return one.file, one.start, one.new, one.operator
-
-
-def known(file: Path) -> dict[Key, dict[str, Any]]:
-    """Verdicts so far; a line that was cut off counts as none."""
-    found = {}
-    for text in file.read_text().splitlines() if file.exists() else ():
-        try:
-            one = json.loads(text)
-        except ValueError:
-            continue
-        found[one["file"], one["start"], one["new"], one["operator"]] = one
-    return found
-
-
-def left(wanted: list[Mutation], file: Path, again: bool) -> list[tuple[int, Mutation]]:
+def left(wanted: list[Mutation], known: Verdicts, again: bool) -> list[tuple[int, Mutation]]:
     """What is not known yet; `again`: nor what survived for want of time."""
-    done = known(file)
     return [
         (number, one) for number, one in enumerate(wanted)
-        if key(one) not in done or (again and not done[key(one)]["whole"])
+        if not (found := known.of(one)) or (again and not found["whole"])
     ]  # fmt: skip
 
 
-def run(todo: list[tuple[int, Mutation]], file: Path, workers: int, seconds: float) -> None:
+def run(todo: list[tuple[int, Mutation]], known: Verdicts, workers: int, seconds: float) -> None:
     """Try mutations side by side, each worker in copies of its own."""
     trees: SimpleQueue[Tree] = SimpleQueue()
     times = Times(FOLDER / "seconds.json")
@@ -68,10 +48,8 @@ def run(todo: list[tuple[int, Mutation]], file: Path, workers: int, seconds: flo
             found = tried(tree, one, number, seconds)
         finally:
             trees.put(tree)
-        with writing, file.open("a") as log:
-            log.write(json.dumps(found) + "\n")
-            log.flush()
-            os.fsync(log.fileno())
+        with writing:
+            known.add(one, found)
         return found
 
     with ThreadPoolExecutor(workers) as pool:
@@ -87,24 +65,23 @@ def equivalent(one: Mutation) -> str:
     return EQUIVALENT.get((one.file, text, one.new), "")
 
 
-def table(wanted: list[Mutation], file: Path) -> float:
+def table(wanted: list[Mutation], known: Verdicts) -> float:
     """Print the survivors; the share of those tried that died, without equivalent ones."""
-    done = known(file)
-    tried_ones = [one for one in wanted if key(one) in done]
-    dead = [one for one in tried_ones if done[key(one)]["verdict"] == "killed"]
-    survivors = [one for one in tried_ones if one not in dead]
+    done = {one: found for one in wanted if (found := known.of(one))}
+    dead = [one for one, found in done.items() if found["verdict"] == KILLED]
+    survivors = [one for one in done if one not in dead]
     same = [one for one in survivors if equivalent(one)]
     for one in survivors:
-        found = done[key(one)]
+        found = done[one]
         tests = (
             "all tests" if found["whole"] else f"the nearest {found['tests']} tests, out of time"
         )
         why = f"; equivalent: {equivalent(one)}" if one in same else ""
         print(f"survived {tests}: {found['told']}{why}")
-    count = len(tried_ones) - len(same)
+    count = len(done) - len(same)
     share = len(dead) / count if count else 0.0
     print(f"{len(dead)} of {count} died, {100 * share:.1f} %; {len(same)} more are equivalent; "
-          f"{len(wanted) - len(tried_ones)} of {len(wanted)} are still to be tried")  # fmt: skip
+          f"{len(wanted) - len(done)} of {len(wanted)} are still to be tried")  # fmt: skip
     return share
 
 
@@ -124,13 +101,14 @@ def main() -> None:
             print(one.told((ROOT / one.file).read_bytes()))
         return
     FOLDER.mkdir(parents=True, exist_ok=True)
-    file = FOLDER / f"{digest()}.jsonl"
+    known = Verdicts()
     if not a.table:
-        todo = left(wanted, file, a.again)
-        print(f"{len(wanted)} mutations, {len(todo)} to try; {file}", flush=True)
-        run(todo, file, a.workers, a.seconds)
-    share = table(wanted, file)
-    sys.exit(0 if share >= ENOUGH and not left(wanted, file, False) else 1)
+        todo = left(wanted, known, a.again)
+        print(f"{len(wanted)} mutations, {len(todo)} to try", flush=True)
+        run(todo, known, a.workers, a.seconds)
+        known.tidy(wanted)
+    share = table(wanted, known)
+    sys.exit(0 if share >= ENOUGH and not left(wanted, known, False) else 1)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,12 @@
-"""Which mutations are tried: drawn uniformly over the lines of the rooms where anything can be."""
+"""Which mutations are tried: drawn uniformly over the lines of the rooms where anything can be.
+
+Every line has a number of its own, made of the seed, its file and its text, and those of the
+smallest numbers are drawn.  So a change of one line changes nothing about the others, and what is
+known of them stays known.
+"""
 
 import hashlib
-import random
+from collections import Counter
 from functools import cache
 from pathlib import Path
 
@@ -18,13 +23,22 @@ def sources(root: Path = ROOT) -> list[str]:
 
 
 @cache
-def lines(root: Path = ROOT) -> list[list[Mutation]]:
-    """The mutations of each line that has any."""
-    found: dict[tuple[str, int], list[Mutation]] = {}
+def lines(root: Path = ROOT) -> dict[str, list[Mutation]]:
+    """The mutations of each line that has any, by what names it: its file, text and which one of
+    several such it is."""
+    found: dict[str, list[Mutation]] = {}
     for file in sources(root):
-        for one in mutations(file, (root / file).read_bytes()):
-            found.setdefault((file, one.line), []).append(one)
-    return [found[place] for place in sorted(found)]
+        data = (root / file).read_bytes()
+        texts = data.decode().split("\n")
+        of_line: dict[int, list[Mutation]] = {}
+        for one in mutations(file, data):
+            of_line.setdefault(one.line, []).append(one)
+        seen: Counter[str] = Counter()
+        for number in sorted(of_line):
+            text = texts[number - 1].strip()
+            seen[text] += 1
+            found[f"{file}\n{text}\n{seen[text]}"] = of_line[number]
+    return found
 
 
 def digest(root: Path = ROOT) -> str:
@@ -40,6 +54,11 @@ def digest(root: Path = ROOT) -> str:
 
 def drawn(count: int, seed: str, root: Path = ROOT) -> list[Mutation]:
     """The first `count` mutations of a seed: of lines drawn one after another, one each."""
-    dice = random.Random(seed)
-    order = dice.sample(lines(root), len(lines(root)))
-    return [dice.choice(line) for line in order[:count]]
+    numbers = {name: number(seed, name) for name in lines(root)}
+    order = sorted(numbers, key=lambda name: numbers[name])[:count]
+    return [lines(root)[name][numbers[name] % len(lines(root)[name])] for name in order]
+
+
+def number(seed: str, name: str) -> int:
+    """A number like one thrown, always the same for the same words."""
+    return int.from_bytes(hashlib.sha256(f"{seed}\n{name}".encode()).digest())

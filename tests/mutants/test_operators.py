@@ -4,7 +4,7 @@ import ast
 
 import pytest
 
-from .drawn import ROOMS, ROOT, drawn, sources
+from .drawn import ROOMS, ROOT, drawn, lines, sources
 from .equivalent import EQUIVALENT
 from .nearest import stages
 from .operators import mutations
@@ -78,6 +78,22 @@ def test_drawn_from_all_rooms_and_the_same_again():
         text = (ROOT / one.file).read_bytes()
         assert one.of(text) != text
         ast.parse(one.of(text))
+
+
+def test_a_change_of_one_line_leaves_the_others_drawn(tmp_path):
+    """So that what is known of them stays known."""
+    for room in ROOMS:
+        (tmp_path / "trsim" / room).mkdir(parents=True)
+    file = tmp_path / "trsim/laws/many.py"
+    text = "".join(f"def f{k}(a, b):\n    return a + b * {k}\n" for k in range(200))
+    file.write_text(text)
+    before = {(one.operator, one.new, file.read_text().split("\n")[one.line - 1])
+              for one in drawn(50, "s", tmp_path)}  # fmt: skip
+    lines.cache_clear()
+    file.write_text("import math\n" + text.replace("a + b * 77\n", "a - b * 77\n"))
+    after = {(one.operator, one.new, file.read_text().split("\n")[one.line - 1])
+             for one in drawn(50, "s", tmp_path)}  # fmt: skip
+    assert len(before & after) >= 49
 
 
 def test_every_source_file_has_all_tests_and_its_own_first():
