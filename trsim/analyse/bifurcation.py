@@ -20,6 +20,7 @@ import numpy as np
 
 from trsim.analyse.apart import STILL
 from trsim.analyse.cases import answers, numeric, varied
+from trsim.analyse.outputs import scalar
 from trsim.analyse.window import parted, window
 from trsim.arrays import Array
 from trsim.errors import UsageError, known
@@ -131,7 +132,7 @@ def narrow(run: Run, channel: str) -> float:
     """
     kept = [np.array([peak.value for peak in run.peaks if peak.channel == channel])]
     if run.stores(channel):
-        kept.append(run.channel(channel).ravel())
+        kept.append(np.array([scalar(run, f"{word}:{channel}")[0] for word in ("peak", "least")]))
     largest = max((float(np.max(np.abs(part), initial=0.0)) for part in kept), default=0.0)
     return max(NARROW * spread(kept), STILL / TOLERANCE * largest)
 

@@ -44,17 +44,30 @@ def scalar(run: Run, word: str) -> Number:
 
     Raises UsageError for a word that makes no sense, or names what the run does not have.
     """
+    if (kept := run.kept(word)) is not None:
+        return kept
+    name, text = parted(word)
+    kind, _, of = name.partition(":")
+    if kind not in KINDS:
+        raise _no_kind(run, word, name, kind)
+    check_word(word)
+    within = window(run, text, rows=kind not in LOCATED)
+    value, unit = KINDS[kind](run, of, within, bool(text))
+    return float(value), unit
+
+
+def check_word(word: str) -> None:
+    """Check that a word has the form of a number.  Raises UsageError."""
     name, text = parted(word)
     kind, colon, of = name.partition(":")
     if kind not in KINDS:
-        raise _no_kind(run, word, name, kind)
+        meant = MEANT.get(kind)
+        hint = f"Write {meant}:{of}." if meant and of else f"{FORM}  {known(kind, KINDS)}"
+        raise UsageError(f"no number of a run: {described(word)}", hint)
     if not colon or not of:
         raise UsageError(f"{described(word)} does not say of what", FORM)
     if kind in WHOLE and text:
         raise UsageError(f"{described(word)}: {kind} is of the whole run", "Leave out the window.")
-    within = window(run, text, rows=kind not in LOCATED)
-    value, unit = KINDS[kind](run, of, within, bool(text))
-    return float(value), unit
 
 
 def _no_kind(run: Run, word: str, name: str, kind: str) -> UsageError:

@@ -14,10 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.analyse.onsets import changes, closings
 from trsim.analyse.window import Window
 from trsim.arrays import Array
-from trsim.store.read import Run, opened
+from trsim.store.read import Run
 
 RIPPLE = 0.01  # of the deepest penetration of a contact: less is no maximum of its own
 
@@ -44,9 +43,14 @@ def shares(run: Run, joint: str, within: Window) -> Shares:
     Raises UsageError where the run has no such contact.
     """
     steps = run.steps(joint)
-    with opened(run.path) as file:
-        times, closes = changes(file, joint)
-        struck = closings(file, joint)
+    events = run.events
+    mine = events.element == joint
+    times, kind = events.time[mine], events.kind[mine]
+    struck = times[kind == "onset"]
+    changed = np.isin(kind, ("onset", "separation"))
+    times, closes = times[changed], kind[changed] == "onset"
+    if not changed.any() and len(steps["time"]):  # closed throughout
+        times, closes = run.time[:1], np.array([True])
     begins, ends = intervals(times, closes, within)
     once = single(steps["time"], steps["penetration"], begins, ends)
     length = within.end - within.begin

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trsim.api.result import Result, factor
-from trsim.errors import UsageError, known
+from trsim.errors import FileError, UsageError, known
 from trsim.sweeps.study import Case, study
 
 if TYPE_CHECKING:
@@ -36,8 +36,8 @@ class Sweep:
         return len(self.cases)
 
     def __iter__(self) -> Iterator[Result]:
-        """The results of all cases that have one."""
-        return (Result(case.file) for case in self.cases if case.there)
+        """The results of all cases that have a result file."""
+        return (Result(case.file) for case in self.cases if case.filed)
 
     def __getitem__(self, case: str | int) -> Result:
         """The result of a case, by its name or its number.  Raises FileError where it has none."""
@@ -46,6 +46,9 @@ class Sweep:
             raise UsageError(f"{self.folder}: no case named '{case}'", hint)
         found = self.study.named[case] if isinstance(case, str) else self.cases[case]
         found.run()  # tells why there is none
+        if not found.filed:
+            hint = f"`trsim run {self.folder} '{found.name}'` makes it; `frame` has its numbers."
+            raise FileError(f"{found.file}: the sweep kept the numbers of the case only", hint)
         return Result(found.file)
 
     def frame(self, *words: str, units: dict[str, str] | None = None) -> "pandas.DataFrame":

@@ -12,6 +12,7 @@ from trsim.api.running import placed
 from trsim.api.source import Given, Sets, called, settings
 from trsim.api.stop import listening
 from trsim.errors import CasesFailed, Problems, TrsimError, UsageError, described, some
+from trsim.scenario.vary import KEEP
 from trsim.sweeps.go import Shard, differing, engine, go
 from trsim.sweeps.ledger import counts, in_a_line
 from trsim.sweeps.plan import Plan, faults, plan
@@ -33,6 +34,8 @@ class Options(TypedDict, total=False):
     time_limit  s of wall time for a case, 0: any
     memory      bytes for a case, 0: any
     retries     further attempts after the process of a case died
+    keep        "all": the result file of every case; "summary": its numbers only; None: as the
+                scenario says
     """
 
     jobs: int | None
@@ -41,6 +44,7 @@ class Options(TypedDict, total=False):
     time_limit: float
     memory: int
     retries: int
+    keep: str | None
 
 
 class How(NamedTuple):
@@ -52,6 +56,7 @@ class How(NamedTuple):
     time_limit: float = 0.0
     memory: int = 0
     retries: int = 2
+    keep: str | None = None
 
 
 class Work(NamedTuple):
@@ -98,7 +103,7 @@ def sweep(
     folder = Path(output or f"runs/{Path(called(scenario)).stem}")
     with listening():
         identity = engine()
-        planned = planned_of(hears, scenario, settings(set), identity)
+        planned = keeping(planned_of(hears, scenario, settings(set), identity), how)
         work = Work(planned, folder, identity, how)
         ended = made(hears, work)
     found = Sweep(folder)
@@ -116,6 +121,7 @@ def sensible(how: How) -> How:
         "time_limit": not 0.0 <= how.time_limit < float("inf"),
         "memory": how.memory < 0 or (how.memory > 0 and not LIMITS_MEMORY),
         "retries": not 0 <= how.retries <= 100,
+        "keep": how.keep not in (None, *KEEP),
     }
     for name in (name for name, is_wrong in wrong.items() if is_wrong):
         hint = "`help(trsim.sweep)` says what it may be."
@@ -142,6 +148,11 @@ def planned_of(hears: Listener, given: Given, sets: tuple[str, ...], identity: s
         doing(f"checking {len(planned.cases)} cases")
         checked(planned)
     return planned
+
+
+def keeping(planned: Plan, how: How) -> Plan:
+    """The plan with what is to be kept of its cases."""
+    return planned._replace(keep=how.keep) if how.keep else planned
 
 
 def checked(planned: Plan) -> None:

@@ -40,12 +40,18 @@ def command(
     A run that was interrupted or killed leaves FILE.part and, every 60 s, FILE.checkpoint: the same
     command with --resume goes on there, and ends with the result of an unbroken run.
 
+    `trsim run FOLDER CASE ...`, of a sweep that kept numbers only, runs these cases again and keeps
+    their result files.
+
     With --certify the twin comes first, into FILE.twin.h5, and is removed when both are compared.
     """
     from trsim.api.run import failed, wanted
 
     answer.data["runs"] = []
     how = wanted(**options, certify=certify_with or certify, option="--certify-with")
+    if (Path(scenarios[0]) / "plan.json").is_file():
+        cases(answer, Path(scenarios[0]), scenarios[1:])
+        return
     for source, target in targets(scenarios, output):
         try:
             summary = one(answer, source, target, how)
@@ -56,6 +62,26 @@ def command(
         answer.put(summary["file"])
         if summary["status"] in ILL:
             answer.fail(failed(source, summary), about=source)
+
+
+def cases(answer: Answer, folder: Path, names: tuple[str, ...]) -> None:
+    """Run cases of a sweep again."""
+    from trsim.api.cases import again
+    from trsim.api.run import failed
+
+    if not names:
+        hint = (
+            f"Name cases of it: trsim run {folder} CASE.  {folder / 'index.csv'} has their names."
+        )
+        raise UsageError(f"{folder} is the folder of a sweep", hint)
+    for summary in again(answer, folder, names):
+        answer.say(line(summary))
+        if summary.get("as_kept"):
+            answer.say("its numbers are those that the sweep kept")
+        answer.data["runs"].append(summary)
+        answer.put(summary["file"])
+        if summary["status"] in ILL:
+            answer.fail(failed(summary["file"], summary), about=summary["file"])
 
 
 def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, Path]]:

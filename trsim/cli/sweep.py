@@ -8,6 +8,7 @@ import click
 
 from trsim.cli.frame import NAMED, Answer, framed
 from trsim.cli.resume import Seconds
+from trsim.scenario.vary import KEEP
 from trsim.system import LIMITS_MEMORY
 
 BYTES = {"": 1, "b": 1}  # and kb, mb, gb, kib, mib, gib
@@ -75,6 +76,10 @@ class Share(click.ParamType):
     "--retries", type=click.IntRange(min=0, max=100), default=2, show_default=True,
     help="Further attempts after the process of a case died.",
 )  # fmt: skip
+@click.option(
+    "--keep", type=click.Choice(KEEP),
+    help="Keep every result file, or numbers only.  [default: as the scenario says, or all]",
+)  # fmt: skip
 @framed
 def command(
     answer: Answer, scenario: str, output: str | None, sets: tuple[str, ...], **options: Any
@@ -82,21 +87,23 @@ def command(
     """Run all cases of a SCENARIO with a `sweep:` or `cases:` block, or with --set KEY=[...].
 
     Writes FOLDER/cases/NAME.h5, a result file for each case, and FOLDER/index.csv, one row for
-    each.  The same command again runs what is missing or changed, and nothing else.
+    each.  With --keep summary FOLDER/summaries.jsonl.gz takes the place of the result files, with
+    20 to 100 kB a case.  The same command again runs what is missing or changed, and nothing else.
     """
-    from trsim.api.sweep import How, Work, assembled, made, planned_of
+    from trsim.api.sweep import How, Work, assembled, keeping, made, planned_of
     from trsim.sweeps.go import engine
 
     dry_run, explain = options.pop("dry_run"), options.pop("explain")
     identity = engine()
-    planned = planned_of(answer, scenario, sets, identity)
+    how = How(**options)
+    planned = keeping(planned_of(answer, scenario, sets, identity), how)
     folder = Path(output or f"runs/{Path(scenario).stem}")
     answer.data |= {"folder": str(folder), "cases": len(planned.cases), "ran": 0, "counts": {}}
 
     def counted(_: Any) -> None:
         answer.data["ran"] += 1
 
-    work = Work(planned, folder, identity, How(**options), counted)
+    work = Work(planned, folder, identity, how, counted)
     if explain or dry_run:
         reasons(answer, work, explain)
     if dry_run:

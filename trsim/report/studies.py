@@ -96,9 +96,9 @@ def usual(one: Shown) -> list[str]:
              if f"{n}.{k}" in run.units]  # fmt: skip
     found += [f"{kind}:{n}.force" for n, part in run.parts.items() if part.section == "drives"
               for kind in ("peak", "least") if f"{n}.force" in run.units]  # fmt: skip
-    fast = shows(run.time)
-    found += [f"fluctuation:{n}.rate" for n, part in run.parts.items()
-              if fast and part.section == "sensors" and f"{n}.rate" in run.units]  # fmt: skip
+    words = [f"fluctuation:{n}.rate" for n, part in run.parts.items()
+             if part.section == "sensors" and f"{n}.rate" in run.units]  # fmt: skip
+    found += [word for word in words if run.kept(word) is not None or shows(run.time)]
     return found or ["summary:time"]
 
 

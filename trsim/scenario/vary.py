@@ -7,6 +7,9 @@
     method: grid       all combinations;  zip: the values side by side;  or, of `samples` cases with
                        a `seed`: latin_hypercube, monte_carlo, sobol
 
+    keep: all          the result file of every case;  summary: its numbers only (sweeps/summary.py)
+    numbers: [...]     which a summary has besides: peak:B.contact_force@0.3..0.5
+
 A key with a dot is a dotted path as for --set.  A normal distribution is cut at three standard
 deviations.  sobol is Saltelli's design of samples (d + 2) cases for indices of variance.
 """
@@ -21,7 +24,9 @@ from trsim.units import unit as dimension
 
 METHODS = ("grid", "zip", "latin_hypercube", "monte_carlo", "sobol")
 SAMPLED = METHODS[2:]
-SETTINGS = ("method", "samples", "seed")
+SETTINGS = ("method", "samples", "seed", "keep", "numbers")
+SUMMARY, ALL = "summary", "all"
+KEEP = (ALL, SUMMARY)
 SPACED = ("lin", "log")
 DRAWN = ("uniform", "log_uniform", "normal")
 MOST = 100_000  # values of an axis, samples
@@ -56,6 +61,8 @@ class Sweep(NamedTuple):
     method: str = "grid"
     samples: int = 0
     seed: int = 0
+    keep: str = ALL
+    numbers: tuple[str, ...] = ()  # besides those that a summary has anyway
 
 
 def sweep(data: Any) -> Sweep:
@@ -91,7 +98,22 @@ def sweep(data: Any) -> Sweep:
         lengths = ", ".join(f"{len(one.values)} of {one.key}" for one in axes if one.values)
         raise ScenarioError("zip needs as many values of each key", f"There are {lengths}.")
     samples = _whole(data, "samples", 1) if method in SAMPLED else 0
-    return Sweep(axes, method, samples, _whole(data, "seed", 0) if "seed" in data else 0)
+    seed = _whole(data, "seed", 0) if "seed" in data else 0
+    return Sweep(axes, method, samples, seed, *_kept(data))
+
+
+def _kept(data: dict[str, Any]) -> tuple[str, tuple[str, ...]]:
+    """What is kept of the cases."""
+    keep, numbers = data.get("keep", ALL), data.get("numbers", [])
+    if keep not in KEEP:
+        hint = known(keep, KEEP)
+        raise ScenarioError(f"must be one of {', '.join(KEEP)}, got {described(keep)}", hint,
+                            ("keep",))  # fmt: skip
+    if not isinstance(numbers, list) or not all(isinstance(word, str) for word in numbers):
+        hint = "Write for example `numbers: [peak:B.contact_force@0.3..0.5]`."
+        raise ScenarioError(f"must be a list of numbers of a run, got {described(numbers)}", hint,
+                            ("numbers",))  # fmt: skip
+    return keep, tuple(dict.fromkeys(numbers))
 
 
 def axis(key: str, value: Any) -> Axis:

@@ -17,7 +17,7 @@ import numpy as np
 from trsim.statuses import Status
 from trsim.store.grow import TEXT
 from trsim.store.peaks import Peak
-from trsim.store.read import FORMAT, VERSION
+from trsim.store.read import FORMAT, VERSION, Part
 from trsim.version import __version__
 
 PACKAGES = ("numpy", "numba", "llvmlite", "scipy", "h5py", "pydantic")  # have a part in results
@@ -93,18 +93,27 @@ def _mechanism(group: h5py.Group, scenario: Any, mechanism: Any) -> None:
     group.attrs["mobility"] = int(mechanism.mobility)
     for name in ("redundant", "singular", "not_unique", "notes"):
         group[name] = np.array(list(getattr(mechanism, name)), dtype=TEXT)
-    shown = [i for i in mechanism.instances if i.section]
-    specs = [getattr(scenario, i.section).get(i.name) for i in shown]
-    group["name"] = np.array([i.name for i in shown], dtype=TEXT)
-    group["section"] = np.array([i.section for i in shown], dtype=TEXT)
-    group["type"] = np.array([i.element.key for i in shown], dtype=TEXT)
-    joints = [str(getattr(spec, "joint", None) or "") for spec in specs]
-    group["joint"] = np.array(joints, dtype=TEXT)
-    bodies = [" ".join(getattr(spec, "bodies", None) or ()) for spec in specs]
+    found = parts(scenario, mechanism)
+    group["name"] = np.array(list(found), dtype=TEXT)
+    for name in ("section", "type", "joint"):
+        group[name] = np.array([getattr(part, name) for part in found.values()], dtype=TEXT)
+    bodies = [" ".join(part.bodies) for part in found.values()]
     group["bodies"] = np.array(bodies, dtype=TEXT)
-    clearance = [float(getattr(spec, "clearance", None) or 0.0) for spec in specs]
-    group["clearance"] = np.array(clearance)
+    group["clearance"] = np.array([part.clearance for part in found.values()])
     group["clearance"].attrs.update({"units": "m", "long_name": "radial clearance"})
+
+
+def parts(scenario: Any, mechanism: Any) -> dict[str, Part]:
+    """The elements of a mechanism by name."""
+    found = {}
+    for one in mechanism.instances:
+        if one.section:
+            spec = getattr(scenario, one.section).get(one.name)
+            joint = str(getattr(spec, "joint", None) or "")
+            bodies = tuple(getattr(spec, "bodies", None) or ())
+            clearance = float(getattr(spec, "clearance", None) or 0.0)
+            found[one.name] = Part(one.section, one.element.key, joint, bodies, clearance)
+    return found
 
 
 def flag(file: h5py.File, mechanism: Any) -> None:
@@ -122,7 +131,7 @@ def flag(file: h5py.File, mechanism: Any) -> None:
 
 
 def summary(
-    run: Any, file: h5py.File, status: Status, reason: str, outcome: Any, found: list[Peak]
+    run: Any, title: str, status: Status, reason: str, outcome: Any, found: list[Peak]
 ) -> dict[str, Any]:
     """The run in a few numbers."""
     from trsim.scenario.lint import lint
@@ -146,7 +155,7 @@ def summary(
     return {
         "status": status,
         "reason": reason,
-        "title": str(file.attrs["title"]),
+        "title": title,
         "time": float(outcome.time if outcome else run.time),
         "rows": run.rows.n,
         "events": run.events.n,
@@ -167,13 +176,15 @@ def end(
     summarised(file, told)
     solver = file["solver"]
     solver["warnings"] = np.array(told["warnings"], dtype=TEXT)
-    for name, value in vars(scenario.solver).items():
-        if isinstance(value, str | int | float | bool):
-            solver.attrs[name] = value
-    for name, value in told["statistics"].items():
-        if name != CPU:
-            solver.attrs[name] = value
+    for name, value in of_solver(scenario, told["statistics"]).items():
+        solver.attrs[name] = value
     file["provenance"].attrs.update(provenance)
+
+
+def of_solver(scenario: Any, statistics: dict[str, Any]) -> dict[str, Any]:
+    """The settings of the solver, and what it counted; no times."""
+    plain = {n: v for n, v in vars(scenario.solver).items() if isinstance(v, str | int | float)}
+    return plain | {name: value for name, value in statistics.items() if name != CPU}
 
 
 def summarised(file: h5py.File, told: dict[str, Any]) -> None:

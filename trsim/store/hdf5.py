@@ -215,7 +215,8 @@ class Running:
             for e, instance in enumerate(self.mechanism.instances)
             if instance.row.contact is not None
         }
-        self.force = {e: tables.force_column(table) for e, table in self.contacts.items()}
+        every = self.mechanism.instances
+        self.force = {e: tables.force_column(every[e]) for e in self.contacts}
         self.events = tables.events(file, self.mechanism, time_field)
         self.recorded = tables.recorded(file, self.mechanism, [time_field, *fields])
         self.jumps = tables.jumps(file, self.mechanism, time_field)
@@ -295,7 +296,8 @@ class Running:
                     points.complete(file, self.planned)
                     found = peaks.with_strokes(found, file)
                 peaks.store(file, found)
-                summary = describe.summary(self, file, status, reason, outcome, found)
+                title = str(file.attrs["title"])
+                summary = describe.summary(self, title, status, reason, outcome, found)
                 describe.end(file, summary, self.scenario, outcome, provenance)
                 if complete:
                     summary["content_sha256"] = content_hash(file)

@@ -92,11 +92,13 @@ def both_ways(channel: str, unit: str, extremes: Array) -> Iterator[Peak]:
 
 def with_strokes(peaks: list[Peak], file: h5py.File) -> list[Peak]:
     """The peaks with the stroke at their times, by linear interpolation of the rows."""
-    if "stroke" not in file:
-        return peaks
+    return at_strokes(peaks, file["time"], file["stroke"]) if "stroke" in file else peaks
+
+
+def at_strokes(peaks: list[Peak], time: Any, stroke: Any) -> list[Peak]:
+    """The same with the rows themselves: times (n) s and strokes (n), read in parts."""
     wanted = np.array([peak.time for peak in peaks])
     strokes = np.full(len(peaks), np.nan)
-    time, stroke = file["time"], file["stroke"]
     for k in range(0, len(time), ROWS):
         t, s = time[k : k + ROWS + 1], stroke[k : k + ROWS + 1]
         inside = (wanted >= t[0]) & (wanted <= t[-1])

@@ -168,15 +168,20 @@ def declare(file: h5py.File, planned: Plan) -> list[Growing]:
 
 def _table(group: h5py.Group, section: Any) -> Growing:
     """The growing table of a section."""
-    told = {key: getattr(section, key) for key in ("when", "crosses", "every", "at_onset")}
-    group.attrs.update({key: value for key, value in told.items() if value})
-    group.attrs.update({"x": section.x, "y": section.y, "after": section.after, "method": LOCATED})
+    group.attrs.update(defined(section))
     fields = [
         Field("time", "s", "simulated time", TIME),
         Field("x", section.x_unit, section.x, X),
         Field("y", section.y_unit, section.y, Y),
     ]
     return Growing(group, fields, 4, EXPECTED)
+
+
+def defined(section: Any) -> dict[str, Any]:
+    """What a section is of."""
+    told = {key: getattr(section, key) for key in ("when", "crosses", "every", "at_onset")}
+    told = {key: value for key, value in told.items() if value}
+    return told | {"x": section.x, "y": section.y, "after": section.after, "method": LOCATED}
 
 
 def complete(file: h5py.File, planned: Plan) -> None:

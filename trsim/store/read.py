@@ -105,6 +105,11 @@ class Run:
     def unit(self, name: str) -> str:
         return "s" if name == "time" else self.units[self._stored(name)]
 
+    def kept(self, word: str) -> tuple[float, str] | None:
+        """A number by its word (analyse/outputs.py), and its unit, where it is kept as such: of a
+        case of which a sweep keeps numbers only."""
+        return None
+
     def meaning(self, name: str) -> str:
         with opened(self.path) as file:
             return str(file[self._stored(name)].attrs["long_name"])

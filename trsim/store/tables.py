@@ -26,28 +26,48 @@ AXES = ("normal", "friction_1", "friction_2")  # of an impact, in the order of i
 
 def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
     """The table of one contact: its channels at every accepted step in touch."""
-    fields, start = [time_field], 2
+    fields = step_fields(instance)
+    group = file["steps"].create_group(instance.name)
+    return Growing(group, [time_field, *fields], width_of_steps(instance), EXPECTED)
+
+
+def step_fields(instance: Any) -> list[Field]:
+    """The channels of a contact in a line of steps, behind its time and its row."""
+    fields, start = [], 2
     for c in instance.channels:
         fields.append(Field(c.name, c.unit, c.meaning, start, c.size))
         start += c.size
-    return Growing(file["steps"].create_group(instance.name), fields, start, EXPECTED)
+    return fields
 
 
-def force_column(table: Growing) -> int:
+def width_of_steps(instance: Any) -> int:
+    """The columns of a line of steps of a contact."""
+    return 2 + sum(int(c.size) for c in instance.channels)
+
+
+def force_column(instance: Any) -> int:
     """The column of a line of steps that holds the contact force."""
-    start = {field.name: field.start for field in table.fields}
+    start = {field.name: field.start for field in step_fields(instance)}
     return start.get("contact_force", start.get("normal_force", 1))
 
 
 def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
     """The table of onsets and separations, of changes of method, and of user events."""
+    if user := mechanism.stages.switches.events:
+        asked = [event.name for event in user if event.role not in ("stall", "taut")]
+        file["events"].attrs["user"] = asked
+    fields = [time_field, *event_fields(mechanism)]
+    return Growing(file["events"], fields, EVENT_COLUMNS, EXPECTED)
+
+
+def event_fields(mechanism: Any) -> list[Field]:
+    """What a line of events tells behind its time."""
     user = mechanism.stages.switches.events
     names = (*(instance.name or "-" for instance in mechanism.instances), "solver")
     did = ("-",) * len(names) + tuple(event.said for event in user)
     names += tuple(event.name for event in user)
     speed = speed_unit(mechanism)
     fields = [
-        time_field,
         Field("kind", "", "what happened", 1, words=KINDS),
         Field("element", "", "where", 2, words=names),
         Field(
@@ -56,8 +76,6 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
         Field("angle", "rad", "of the contact point around the bearing", 4),
     ]
     if user:
-        asked = [event.name for event in user if event.role not in ("stall", "taut")]
-        file["events"].attrs["user"] = asked
         fields.append(Field("did", "", "what a user event did", 2, words=did))
     strikes = bool(mechanism.model.contact_impact.any())
     if user or mechanism.stages.switches.jumps >= 0 or strikes:
@@ -65,7 +83,7 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
     if np.any(mechanism.model.jump) or strikes:
         meant = "along the normal, of an impact" if strikes else "of a drive whose rate jumps"
         fields.append(Field("impulse", impulse_unit(mechanism), meant, 6))
-    return Growing(file["events"], fields, EVENT_COLUMNS, EXPECTED)
+    return fields
 
 
 def impulse_unit(mechanism: Any) -> str:

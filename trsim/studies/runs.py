@@ -56,7 +56,6 @@ class Runs:
     """
 
     def __init__(self, folder: str | Path, grids: Sequence[str] = (), book: float = BOOK) -> None:
-        from trsim.store.read import read
         from trsim.sweeps.study import study
 
         self.members: dict[str, list[Member]] = {}
@@ -73,7 +72,7 @@ class Runs:
             index = self.planned.get(name, 0)
             self.planned[name] = index + 1
             if case.status in WELL:
-                member = Member(name, index, Path(case.file), read(case.file))
+                member = Member(name, index, Path(case.file), case.run())
                 self.members.setdefault(name, []).append(member)
             else:
                 self.missing[name] = self.missing.get(name, 0) + 1

@@ -86,6 +86,7 @@ def write_plan(folder: Path, plan: Plan, engine: str) -> None:
         "format": FORMAT, "version": VERSION, "source": plan.source, "engine": engine,
         "keys": plan.keys, "units": plan.units, "written": plan.written, "method": plan.method,
         "samples": plan.samples, "seed": plan.seed, "cases": cases,
+        "keep": plan.keep, "numbers": list(plan.numbers), "sets": list(plan.sets),
     }  # fmt: skip
     with fresh(folder / "plan.json", PLAN) as unfinished:
         text = json.dumps(told, ensure_ascii=False)

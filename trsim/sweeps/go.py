@@ -20,8 +20,9 @@ from trsim.sweeps.folder import (
 )
 from trsim.sweeps.job import task
 from trsim.sweeps.ledger import Entry, Ledger, entries, stamp
-from trsim.sweeps.needed import Need, need
+from trsim.sweeps.needed import Need, Where, need
 from trsim.sweeps.plan import Case, Plan, named_file
+from trsim.sweeps.records import Records, Sizes
 from trsim.version import __version__
 
 WRITTEN, RARELY = 1.0, 20.0  # s between two writings of the index; of the time one takes
@@ -51,7 +52,8 @@ def needs(plan: Plan, folder: Path, engine: str, shard: Shard = WHOLE) -> list[t
     """What is to be done about every case of a shard."""
     known = entries(folder)
     mine = plan.cases[shard.i - 1 :: shard.n]
-    return [(case, need(case, known.get(case.name), folder, engine)) for case in mine]
+    where = Where(folder, engine, Sizes(folder))
+    return [(case, need(case, known.get(case.name), plan, where)) for case in mine]
 
 
 def go(
@@ -72,9 +74,11 @@ def go(
         write_plan(folder, plan, engine)
         with file_errors(folder):
             ledger = Ledger(folder, shard.name)
+            records = Records(folder, shard.name, plan.numbers)
         try:
-            yield from _gone_on(plan, folder, engine, run, shard, ledger)
+            yield from _gone_on(plan, folder, engine, run, shard, (ledger, records))
         finally:
+            records.close()
             ledger.close()
             write_index(folder, read_plan(folder), entries(folder))
 
@@ -116,9 +120,14 @@ def differing(plan: Plan, folder: Path) -> int:
 
 
 def _gone_on(
-    plan: Plan, folder: Path, engine: str, run: Runner, shard: Shard, ledger: Ledger
+    plan: Plan,
+    folder: Path,
+    engine: str,
+    run: Runner,
+    shard: Shard,
+    books: tuple[Ledger, Records],
 ) -> Generator[Entry | int, None, None]:
-    wanted, known = [], entries(folder)
+    (ledger, records), wanted, known = books, [], entries(folder)
     for case, found in needs(plan, folder, engine, shard):
         if found.why:
             wanted.append(case)
@@ -133,10 +142,14 @@ def _gone_on(
     took, written = 0.0, time.monotonic()
     for one, ended in run(tasks):
         case = cases[one["name"]]
-        size, changed = stamp(named_file(folder, case.name)) if ended.get("content") else (0, 0)
+        with file_errors(records.path):
+            kept = records.add(ended["record"]) if "record" in ended else ""
+        filed = ended.get("content") and not kept
+        size, changed = stamp(named_file(folder, case.name)) if filed else (0, 0)
         entry = Entry(case.name, case.digest, engine, ended["status"], ended["reason"],
                       ended.get("attempts", 1), ended.get("content", ""), size, changed,
-                      time.time(), ended.get("wall", 0.0), ended.get("summary", {}))  # fmt: skip
+                      time.time(), ended.get("wall", 0.0), ended.get("summary", {}),
+                      kept)  # fmt: skip
         with file_errors(ledger.path):
             ledger.add(entry)
         known[case.name] = entry

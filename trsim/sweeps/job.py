@@ -10,6 +10,7 @@ from typing import Any
 
 from trsim.errors import FileError, SolverError, TrsimError
 from trsim.scenario.methods import METHODS
+from trsim.scenario.vary import SUMMARY
 from trsim.solve.blocks import Blocks
 from trsim.sweeps.ledger import DIGEST, REFUSED
 
@@ -49,7 +50,8 @@ def run(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
         "reason": summary["reason"],
         "content": summary["content_sha256"],
         "wall": time.perf_counter() - clock,
-        "summary": brief(summary),
+        "summary": brief(summary) | summary["asked"],
+        **({"record": summary["record"]} if "record" in summary else {}),
     }
 
 
@@ -80,6 +82,8 @@ def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
 
         found = sized(scenario)
         scenario, passes = found.scenario, found.in_words
+    if task["keep"] == SUMMARY:
+        return _summarised(task, scenario, begun)
     kept = _checkpoint(target, scenario)
     mechanism = assemble(scenario)
 
@@ -92,7 +96,36 @@ def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
     blocks = _told(simulate(scenario, mechanism, kept.state if kept else None), begun)
     every = CHECKPOINT if METHODS[scenario.solver.method].marches else 0.0
     around = Around(task["command"], every, kept, closing)
-    return write(target, scenario, mechanism, blocks, around)
+    summary = write(target, scenario, mechanism, blocks, around)
+    return summary | {"asked": asked(target, task["numbers"])}
+
+
+def _summarised(task: dict[str, Any], scenario: Any, begun: Callable[[], None]) -> dict[str, Any]:
+    """Run a case of which a record is all that is kept."""
+    from trsim.assemble.assemble import assemble
+    from trsim.solve.simulate import simulate
+    from trsim.store.live import Taking
+    from trsim.sweeps.summary import record, sent
+
+    mechanism = assemble(scenario)
+    taking = Taking(Path(task["target"]), scenario, mechanism)
+    live, summary = taking.all(_told(simulate(scenario, mechanism), begun))
+    told = record(live, task["numbers"])
+    packed = sent(told)
+    numbers = {word: value for word, (value, _) in told["asked"].items()}
+    return summary | {"content_sha256": packed["content"], "record": packed["record"],
+                      "asked": numbers}  # fmt: skip
+
+
+def asked(target: Path, words: list[str]) -> dict[str, float | None]:
+    """Numbers of a result file by their words; None where it has none."""
+    if not words:
+        return {}
+    from trsim.store.read import read
+    from trsim.sweeps.summary import number
+
+    run = read(target)
+    return {word: number(run, word)[0] for word in words}
 
 
 def _told(
@@ -152,4 +185,6 @@ def task(case: Any, plan: Any, target: Path) -> dict[str, Any]:
         "target": str(target),
         "digest": case.digest,
         "command": f"trsim sweep {plan.source}",
+        "keep": plan.keep,
+        "numbers": list(plan.numbers),
     }

@@ -40,6 +40,7 @@ class Entry(NamedTuple):
     at: float  # s since 1970
     wall: float  # s
     summary: dict[str, Any]
+    kept: str = ""  # where its record is, see records.py; "" of a case with a result file
 
     @property
     def failed(self) -> bool:
@@ -102,8 +103,9 @@ def entry_of(line: bytes) -> Entry | None:
         told = json.loads(line)
     except (ValueError, RecursionError):
         return None
-    if not isinstance(told, dict) or {*told} != {*Entry._fields}:
+    if not isinstance(told, dict) or {*told, "kept"} != {*Entry._fields}:
         return None
+    told.setdefault("kept", "")
     if not all(isinstance(told[name], kind) for name, kind in KINDS.items()):
         return None
     if any(isinstance(value, bool) for value in told.values()):

@@ -7,14 +7,24 @@ from typing import Any, NamedTuple
 import h5py
 
 from trsim.errors import some
+from trsim.scenario.vary import SUMMARY
 from trsim.store.checkpoint import differing, leaves
 from trsim.sweeps.job import CONTACT, STATISTICS
 from trsim.sweeps.ledger import AGAIN, DIGEST, REFUSED, Entry, stamp
 from trsim.sweeps.plan import Case, Plan, named_file
+from trsim.sweeps.records import Sizes, place, words_digest
 
 DAMAGED = (OSError, LookupError, RuntimeError, ValueError, TypeError, AttributeError)
 CHANGED = "its file was changed"
 SHOWN = 4  # differences that are told
+
+
+class Where(NamedTuple):
+    """A folder, and what makes results for it."""
+
+    folder: Path
+    engine: str
+    sizes: Sizes
 
 
 class Need(NamedTuple):
@@ -24,8 +34,9 @@ class Need(NamedTuple):
     entry: Entry | None  # that stands
 
 
-def need(case: Case, entry: Entry | None, folder: Path, engine: str) -> Need:
+def need(case: Case, entry: Entry | None, plan: Plan, where: Where) -> Need:
     """Whether a case is run, given its last entry."""
+    folder, engine = where.folder, where.engine
     file = named_file(folder, case.name)
     if entry is None:
         if not file.exists():
@@ -40,9 +51,22 @@ def need(case: Case, entry: Entry | None, folder: Path, engine: str) -> Need:
         return Need(f"tried again: {entry.status}", entry)
     if entry.status == REFUSED:
         return Need("", entry)
+    if entry.kept:  # the case may have been run again since, with all that it gives
+        full = adopted(case.name, case.digest, file, engine) if file.exists() else None
+        return Need("", full) if full else Need(unkept(entry, plan, where), entry)
     if found := stands(entry, file, engine):
         return Need("", found)
     return Need(CHANGED if stamp(file)[0] else "its file is gone", entry)
+
+
+def unkept(entry: Entry, plan: Plan, where: Where) -> str:
+    """Why the record of a case is not all that is asked for; empty where it is."""
+    at = place(entry.kept)
+    if at is None or not where.sizes.has(at):
+        return "its summary is gone"
+    if plan.keep != SUMMARY:
+        return "its result file is asked for"
+    return "" if at.words == words_digest(plan.numbers) else "other numbers are asked for"
 
 
 def stands(entry: Entry, file: Path, engine: str) -> Entry | None:

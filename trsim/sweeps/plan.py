@@ -50,11 +50,28 @@ class Plan(NamedTuple):
     samples: int
     seed: int
     cases: tuple[Case, ...]
+    keep: str  # of what cases give, see vary.py
+    numbers: tuple[str, ...]
+    sets: tuple[str, ...]  # of the command line
     trees: dict[str, "_Named"]  # of the named cases
 
     def scenario(self, case: Case) -> Scenario:
         """The scenario of a case.  Raises what is wrong with it, with its place."""
         return self.trees[case.case].scenario(case)
+
+
+def _check_numbers(words: tuple[str, ...], tree: Tree) -> None:
+    """Check that what is to be kept of every case are numbers of a run."""
+    if not words:
+        return
+    from trsim.analyse.outputs import check_word
+
+    for word in words:
+        try:
+            check_word(word)
+        except UsageError as error:
+            path = ("sweep", "numbers")
+            raise ScenarioError(error.what, error.hint, path, tree.place(path)) from None
 
 
 class _Setting(NamedTuple):
@@ -100,6 +117,7 @@ def plan(
     engine: what identifies the program that makes the runs; read: gives the tree of `path`, and its
     text.
     """
+    sets = tuple(sets)
     fixed, axes = _sorted(sets)
     tree, text = read(path)
     named: dict[str, _Named] = {}
@@ -121,8 +139,9 @@ def plan(
     if "" not in named:
         keys, si = (CASE, *keys), {CASE: "-", **si}
     sweep = max((one.sweep for one in named.values()), key=lambda one: one.samples)
-    return Plan(path, text, tree.files, keys, si, shown, sweep.method, sweep.samples,
-                sweep.seed, tuple(_distinct(found)), named)  # fmt: skip
+    _check_numbers(sweep.numbers, first.tree)
+    return Plan(path, text, tree.files, keys, si, shown, sweep.method, sweep.samples, sweep.seed,
+                tuple(_distinct(found)), sweep.keep, sweep.numbers, sets, named)  # fmt: skip
 
 
 def faults(found: Plan) -> Iterator[tuple[Case, TrsimError]]:

@@ -10,6 +10,8 @@ from trsim.sweeps.folder import read_plan
 from trsim.sweeps.ledger import FAILED, Entry, entries, stamp
 from trsim.sweeps.needed import CHANGED, adopted, stands
 from trsim.sweeps.plan import named_file
+from trsim.sweeps.records import Place, Sizes, place, stored
+from trsim.sweeps.summary import kept
 
 MISSING = "missing"
 
@@ -26,9 +28,19 @@ class Case:
     entry: Entry | None
 
     @property
+    def kept(self) -> Place | None:
+        """Where its record is, of a case without a result file."""
+        return place(self.entry.kept) if self.entry else None
+
+    @property
     def there(self) -> bool:
-        """Whether it has a result file, whatever its status."""
+        """Whether it has a result file or a record, whatever its status."""
         return self.entry is not None and bool(self.entry.content) and self.status != MISSING
+
+    @property
+    def filed(self) -> bool:
+        """Whether it has a result file."""
+        return self.there and self.kept is None
 
     @property
     def changed(self) -> bool:
@@ -46,6 +58,9 @@ class Case:
             what = f"{self.file}: the case has no result, {self.status}{told}"
             hint = "`trsim sweep` again runs what is missing."
             raise FileError(what, hint, file=str(self.file))
+        if (at := self.kept) is not None:
+            folder, sha = self.file.parent.parent, self.entry.content if self.entry else ""
+            return kept(self.file, self.name, stored(folder, at, sha))
         return read(self.file)
 
 
@@ -72,7 +87,7 @@ def study(folder: str | Path) -> Study:
     """The sweep in a folder.  Raises FileError where there is none that can be read."""
     folder = Path(folder)
     told, known = read_plan(folder), entries(folder)
-    cases = []
+    cases, sizes = [], Sizes(folder)
     for one in told["cases"]:
         entry, file = known.get(one["name"]), named_file(folder, one["name"])
         if entry is not None and entry.digest != one["digest"]:
@@ -80,7 +95,14 @@ def study(folder: str | Path) -> Study:
         if entry is None and file.is_file():  # its line was lost; the file says what it is
             entry = adopted(one["name"], one["digest"], file, told["engine"])
         status, reason = (entry.status, entry.reason) if entry else (MISSING, "")
-        if entry and entry.content and not stands(entry, file, told["engine"]):
+        if entry and (at := place(entry.kept)):
+            if file.is_file() and (
+                full := adopted(one["name"], one["digest"], file, told["engine"])
+            ):
+                entry = full  # made since
+            elif not sizes.has(at):
+                status = MISSING
+        elif entry and entry.content and not stands(entry, file, told["engine"]):
             status, reason = MISSING, CHANGED if stamp(file)[0] else ""
         cases.append(Case(one["name"], file, status, reason, one["values"], entry))
     same = {name: told[name] for name in ("source", "units", "method", "samples", "seed")}

@@ -1,0 +1,229 @@
+"""A run whose results stay in memory: its blocks are taken, and read like a result file.
+
+For cases of which only numbers are kept (sweeps/summary.py).  What it tells is to the bit what the
+file of the same run tells; there is no file, no checkpoint, and nothing to recover.
+"""
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trsim.arrays import Array
+from trsim.errors import TrsimError, UsageError, known
+from trsim.solve.blocks import Blocks
+from trsim.store import describe, peaks, points, tables
+from trsim.store.grow import Field
+from trsim.store.points import Points, between_bars, split
+from trsim.store.read import Events, Run
+
+NONE: Array = np.zeros((0, 0))
+
+
+class Gathered:
+    """Blocks, as they come."""
+
+    def __init__(self, width: int = 0) -> None:
+        self.parts: list[Array] = []
+        self.width = width
+
+    @property
+    def n(self) -> int:
+        return sum(map(len, self.parts))
+
+    def append(self, lines: Array) -> None:
+        """Take lines (n, width), which are the solver's again afterwards."""
+        if len(lines):
+            self.parts.append(lines.copy())
+
+    def whole(self) -> Array:
+        """All of them, one column behind the other in memory."""
+        if not self.parts:
+            return np.zeros((0, self.width))
+        return np.asfortranarray(np.concatenate(self.parts))
+
+
+@dataclass(frozen=True)
+class Live(Run):
+    """A run in memory, complete."""
+
+    columns: Any = None  # channel -> Array
+    of_steps: Any = None  # contact -> {channel: Array}
+    of_events: Any = None  # Events
+    of_sections: Any = None  # name -> Points
+    of_peaks: tuple[peaks.Peak, ...] = ()
+    told: Any = None  # summary
+    solver: Any = None  # attributes of the solver
+    of_units: Any = None  # contact -> {channel: unit}
+    resolved: Any = None  # the scenario
+
+    @property
+    def reached(self) -> float:
+        return float(self.told["time"])
+
+    def channel(self, name: str) -> Array:
+        if (inside := between_bars(name)) is not None:
+            return self._magnitude(inside)
+        stored, component = split(name, self.sizes)
+        if stored not in self.columns:
+            raise UsageError(f"{self.path}: no channel named '{name}'", known(name, self.names))
+        found: Array = self.columns[stored]
+        return found if component is None else found[:, component]
+
+    def steps(self, joint: str) -> dict[str, Array]:
+        if joint not in self.contacts:
+            raise UsageError(f"{self.path}: no contact '{joint}'", known(joint, self.contacts))
+        found: dict[str, Array] = self.of_steps[joint]
+        return found
+
+    def contact_unit(self, joint: str, *channels: str) -> str:
+        units = self.of_units[joint]
+        return next((units[c] for c in channels if c in units), "-")
+
+    @property
+    def events(self) -> Events:
+        found: Events = self.of_events
+        return found
+
+    @property
+    def peaks(self) -> tuple[peaks.Peak, ...]:
+        return self.of_peaks
+
+    @property
+    def poincare(self) -> dict[str, Points]:
+        found: dict[str, Points] = self.of_sections
+        return found
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        found: dict[str, Any] = self.told
+        return found
+
+    @property
+    def scenario(self) -> dict[str, Any]:
+        found: dict[str, Any] = self.resolved
+        return found
+
+    def group(self, name: str) -> dict[str, Any]:
+        if name != "solver":
+            raise UsageError(f"{self.path}: nothing is kept of its {name}")
+        found: dict[str, Any] = self.solver
+        return found
+
+
+class Taking:
+    """Takes the blocks of a run; `live` is what they are of."""
+
+    def __init__(self, path: Path, scenario: Any, mechanism: Any) -> None:
+        self.path, self.scenario, self.mechanism = path, scenario, mechanism
+        self.planned = points.plan(scenario, mechanism)
+        self.rows = Gathered(1 + max((c.start + c.size for c in mechanism.columns), default=0))
+        self.contacts = {
+            e: Gathered(tables.width_of_steps(instance))
+            for e, instance in enumerate(mechanism.instances)
+            if instance.row.contact is not None
+        }
+        self.events, self.points = Gathered(tables.EVENT_COLUMNS), Gathered(4)
+        self.magnitudes = peaks.Magnitudes(mechanism.columns)
+        self.impacts = describe.Impacts(len(mechanism.instances))
+        self.time = 0.0
+
+    def all(self, blocks: Generator[Any, None, Any]) -> tuple[Live, dict[str, Any]]:
+        """Take all blocks; the run, and its summary.  One that fails is a run, too."""
+        run = Blocks(blocks)
+        status, reason = "failed", ""
+        try:
+            for block in run:
+                self.take(block)
+            status, reason = run.outcome.status, run.outcome.reason
+        except TrsimError as error:
+            if not self.rows.n:
+                raise
+            reason = error.what
+        return self.live(status, reason, run.outcome)
+
+    def take(self, block: Any) -> None:
+        self.rows.append(block.rows)
+        if len(block.rows):
+            self.magnitudes.update(block.rows)
+        if len(block.steps):
+            of = block.steps[:, 1]
+            for e, gathered in self.contacts.items():
+                lines = block.steps[of == e][:, : gathered.width]
+                gathered.append(lines)
+                self.impacts.press(e, lines, tables.force_column(self.mechanism.instances[e]))
+        self.events.append(block.events)
+        self.impacts.update(block.events)
+        self.points.append(block.points)
+        self.time = block.time
+
+    def live(self, status: Any, reason: str, outcome: Any) -> tuple[Live, dict[str, Any]]:
+        """The run, and its summary."""
+        mechanism, rows = self.mechanism, self.rows.whole()
+        wanted = [c for c in mechanism.columns if c.wanted or c.name in self.planned.columns]
+        columns = {"time": rows[:, 0]} | {
+            c.name: rows[:, 1 + c.start] if c.size == 1
+            else rows[:, 1 + c.start : 1 + c.start + c.size]
+            for c in wanted
+        }  # fmt: skip
+        extremes = None if outcome is None else outcome.peaks
+        found = peaks.table(mechanism, extremes, self.magnitudes)
+        if "stroke" in columns:
+            found = peaks.at_strokes(found, columns["time"], columns["stroke"])
+        told = describe.summary(self, self.scenario.title, status, reason, outcome, found)
+        shown = {e: mechanism.instances[e] for e in self.contacts}
+        live = Live(
+            path=self.path,
+            attributes={"title": self.scenario.title, "status": status, "reason": reason},
+            units={c.name: c.unit for c in wanted},
+            sizes={c.name: c.size for c in wanted},
+            parts=describe.parts(self.scenario, mechanism),
+            contacts=tuple(instance.name for instance in shown.values()),
+            rows=len(rows),
+            columns=columns,
+            of_steps={i.name: self.steps(e, i) for e, i in shown.items()},
+            of_events=self.happened(),
+            of_sections=self.sections(),
+            of_peaks=tuple(found),
+            told={name: told[name] for name in ("time", "rows", "events", "contacts")},
+            solver=describe.of_solver(self.scenario, told["statistics"]),
+            resolved=self.scenario.resolved,
+            of_units={i.name: {c.name: c.unit for c in i.channels} for i in shown.values()},
+        )
+        return live, told
+
+    def steps(self, e: int, instance: Any) -> dict[str, Array]:
+        """`time` and the channels of a contact at its accepted steps in touch."""
+        lines, fields = self.contacts[e].whole(), tables.step_fields(instance)
+        found = {"time": lines[:, 0]}
+        for f in fields:
+            found[f.name] = (
+                lines[:, f.start] if f.size == 1 else lines[:, f.start : f.start + f.size]
+            )
+        return found
+
+    def happened(self) -> Events:
+        """The table of events, as a file has it."""
+        lines = self.events.whole()
+        fields = {f.name: f for f in tables.event_fields(self.mechanism)}
+
+        def words(field: Field) -> Any:
+            return np.array(field.words)[lines[:, field.start].astype(int)]
+
+        none: dict[str, Any] = {"did": np.array([], "S1").astype(str), "work": np.array([])}
+        there = {
+            name: words(field) if field.words else lines[:, field.start]
+            for name, field in fields.items() if name in Events._fields
+        }  # fmt: skip
+        return Events(**{"time": lines[:, 0], **none, **there})
+
+    def sections(self) -> dict[str, Points]:
+        lines, found = self.points.whole(), {}
+        for k, section in enumerate(self.planned.sections):
+            mine = lines[lines[:, points.SECTION] == k]
+            time, x, y = (mine[:, column] for column in (points.TIME, points.X, points.Y))
+            defined, units = points.defined(section), (section.x_unit, section.y_unit)
+            found[section.name] = Points(defined, time, x, y, *units)
+        return found
