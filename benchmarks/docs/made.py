@@ -86,6 +86,7 @@ MADE: dict[str, Made] = {
     "sections": tested("solve/test_sections", "analyse/test_section"),
     "norm": tested("solve/test_norm"),
     "works": tested("solve/test_works"),
+    "kinematic": tested("solve/test_kinematic_counts"),
     "spatial_reverser": tested("solve/test_spatial_reverser", of=REVERSER),
     "beams": tested("solve/test_beams_at_rest", "solve/test_beams_moving"),
     "lyapunov": Made(

@@ -377,8 +377,7 @@ def test_extremes_between_rows_far_apart(scene, tolerance):
     """37 rows a turn: what the middles of steps show spares looks between rows; none is missed."""
     more = {"scene": scene, "tolerance": tolerance}
     found, known = (run(four_bar(every=every, **more)) for every in (8.5e-3, 1e-4))
-    if tolerance > 1e-10:  # an extreme that is known to 1e-11 is looked at twice
-        few_evaluations(found)
+    few_evaluations(found)
     sought = found.mechanism.model.sought
     named = {c.start + k: c.name for c in found.mechanism.columns for k in range(c.size)}
     units = {c.start + k: c.unit for c in found.mechanism.columns for k in range(c.size)}
@@ -411,7 +410,7 @@ def test_rounding_is_no_extreme():
     steady = Path(__file__).parents[2] / "scenarios" / "validation" / "cardan_shaft.yaml"
     r = run(load(steady, ["solver.method=kinematic"]))
     assert np.abs(r["turn_out.acceleration"]).max() < 1e-10
-    assert r.outcome.statistics["evaluations"] <= 3 * len(r.t)
+    assert r.outcome.statistics["evaluations"] <= 2.1 * len(r.t)
 
 
 @pytest.mark.parametrize("every", [8.5e-3, 1e-3])

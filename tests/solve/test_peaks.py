@@ -435,13 +435,16 @@ def test_rows_stay_on_their_branch_where_branches_meet(rows):
     assert outcome.peaks[rate - 1, 0] < -7.5
 
 
+# channels that are no magnitudes
+AS_THEY_ARE = dict.fromkeys(("constant", "squared", "nearest"), lambda *_: 0)
+AS_THEY_ARE |= dict.fromkeys(("kept_as", "value_of"), lambda s, r, c, value: value)
+
+
 @pytest.mark.parametrize("doubt, looks", [(1e-9, 0), (0.5, 1)])
 def test_what_is_not_sure_is_looked_at(monkeypatch, doubt, looks):
     """A polynomial is taken at its word where what it may lack is little of what may be missed."""
-    b = SimpleNamespace(
-        node=np.array([[1.0, 0.0]]), n_found=0, found=np.zeros(9), firm=np.ones(2), astray=0
-    )
-    r, seen = SimpleNamespace(peak=np.zeros((5, 1))), []
+    b = SimpleNamespace(node=np.eye(1, 2), n_found=0, found=np.zeros(9), firm=np.ones(2), astray=0)
+    r, seen = SimpleNamespace(peak=np.zeros((5, 1)), driven=0), []
 
     def look(s, r, b, setting, method, where):
         seen.append(where[1])
@@ -453,7 +456,7 @@ def test_what_is_not_sure_is_looked_at(monkeypatch, doubt, looks):
     for name, stand_in in {
         "through": lambda *_: peaks.POINTS, "top": lambda *_: (0.4, 2.0 + doubt), "look": look,
         "known_place": lambda *_: False, "settled": lambda *_: True, "extreme": extreme,
-        "polynomial": lambda *_: 2.0,
+        "polynomial": lambda *_: 2.0, **AS_THEY_ARE,
     }.items():  # fmt: skip
         monkeypatch.setattr(peaks, name, stand_in)
     peaks.search.python(SimpleNamespace(sought=[0]), r, b, None, None, (0, 0, 1.0, 1e-3))
@@ -488,7 +491,7 @@ def test_a_dense_output_is_built_where_a_guess_of_the_middle_asks_for_it(
         "older": lambda r, k: k, "ready": lambda *_: False, "length": lambda *_: 1.0,
         "bounds": lambda *_: None, "reached": lambda *_: (True, True), "guess": guess,
         "guessed": lambda s, r, b, *_: (b.n_found > 0 and b.inside[0, 0] > 0, False),
-        "look_within": look_within, "search": lambda *_: None,
+        "look_within": look_within, "search": lambda *_: None, **AS_THEY_ARE,
     }.items():  # fmt: skip
         monkeypatch.setattr(peaks, name, stand_in)
     setting = SimpleNamespace(missed=0.01, t_end=2.0)

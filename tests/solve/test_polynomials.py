@@ -62,6 +62,15 @@ class Drawn:
 CASES = [(seed, n) for n in range(3, POINTS + 1) for seed in range(8)]
 
 
+@pytest.mark.parametrize("at", [0.3 + 1e-5, 0.3 + 3e-4, 0.7 - 1e-5, 0.7 - 3e-4])
+def test_a_vertex_next_to_an_end(at):
+    """Nearer to it than the last of the places where the top is looked for."""
+    one = Drawn(0, 3)
+    one.b.node[1, :3] = 2.0 - (one.times - at) ** 2
+    place, best = one.top()[:2]
+    assert place == pytest.approx(at, abs=1e-9) and best == pytest.approx(2.0, abs=1e-15)
+
+
 @pytest.mark.parametrize("seed, n", CASES)
 def test_top_is_the_largest_value(seed, n):
     one = Drawn(seed, n)

@@ -162,9 +162,9 @@ def compiled(
     room = most_points(mechanism, setting)
     b = fresh_buffers(work, r.y.size, stages, dense_rows, spanned, room)
     if driven:
-        from trsim.solve.march.sides import keep_side, with_square
+        from trsim.solve.march.sides import keep_side, with_room
 
-        b = with_square(b, work)
+        r, b = with_room(r, b, work)
     if sparse:
         r = sparse.record(r, mechanism, dense_rows)
         b = sparse.buffers(b, mechanism, work)

@@ -27,24 +27,41 @@ from trsim.solve.march.calls import BETWEEN_AT, INSIDE_AT
 from trsim.solve.march.dense_output import astray, build, call_measure_in
 from trsim.solve.march.earlier import build_earlier, either_step, ends
 from trsim.solve.march.land import evaluate_inside
-from trsim.solve.march.polynomials import SURE, apart, one_way, polynomial, reach, settled, top
+from trsim.solve.march.polynomials import (
+    SURE,
+    apart,
+    one_way,
+    polynomial,
+    reach,
+    settled,
+    sharper,
+    top,
+)
 from trsim.solve.march.record import BUFFERS, PEAK_MAX, PEAK_MIN, POINTS, RECORD, SETTINGS
 from trsim.solve.march.samples import (
     NOT_LAID,
+    YOUNG,
     aside,
     bounds,
+    constant,
     extreme,
     gather,
+    keep_found,
+    kept_as,
     known_extremes,
     known_place,
+    nearest,
     older,
     push,
+    square,
+    squared,
     through,
+    value_of,
 )
 
 SMALL = 0.01  # of what may be missed of the largest channel of its kind: less is no extreme
-YOUNG = 3  # samples since an event: with no more what lies between them is looked at in any case
 ENDS = 4  # of what is known between and around two samples that are looked at, at least
+ROUGH = 16.0  # times what rounding makes of a channel: one that changes by less is constant
 TINY = 0.02  # of the mean step: in a shorter one nothing turns
 GUESSED = 0.02  # of what a channel changes by: how wrong the guess of its middle may be
 TRIES = 12  # evaluations for one extreme of one channel: a kink is approached slowly
@@ -76,6 +93,8 @@ def sample(s, r, b, setting, method, values):
     if own:
         if r.unseen > 0 and r.n_samples > 2:
             call_between(method[BETWEEN_AT], s, r, b, setting, method, 1)
+            if r.driven > 0 and b.n_found > 0:
+                keep_found(r, b)
         r.unseen = 1
 
 
@@ -110,21 +129,22 @@ def between(s, r, b, setting, method, ahead):
     bounds(r, b, ahead)
     for c in range(now.size):
         high, low = r.peak[PEAK_MAX, s.sought[c]], r.peak[PEAK_MIN, s.sought[c]]
+        of_high, of_low = kept_as(s, r, c, high), kept_as(s, r, c, low)
         beyond = b.bound[1, c]
         above, below = max(now[c], last[c]), min(now[c], last[c])
         for k in range(b.n_found):
             above, below = max(above, b.inside[k, c]), min(below, b.inside[k, c])
         beyond += above - below if b.n_found > 0 else 0.0
-        if above + beyond <= high and below - beyond >= low:
+        if above + beyond <= of_high and below - beyond >= of_low:
             continue
         kind, lever = s.kin[c], s.lever[c]
         enough = share * max(high - low, SMALL * r.largest[kind] / lever)
         enough = max(enough, r.faint[kind] / lever)
-        rises = above + beyond > high + enough
-        falls = low > s.least[c] and below - beyond < low - enough
-        if not (rises or falls):
+        rises = above + beyond > kept_as(s, r, c, high + enough)
+        falls = low > s.least[c] and below - beyond < kept_as(s, r, c, low - enough)
+        if not (rises or falls) or constant(r, c, ROUGH * r.faint[kind] / lever):
             continue
-        if b.n_found == 0 or (ready(r, b, ahead) and b.n_found <= POINTS - 2):
+        if b.n_found == 0 or (ready(r, b, ahead) and b.n_found <= r.sampled.size - 2):
             up, down = reached(s, r, b, ahead, c, enough)
             rises, falls = rises and up, falls and down
             if not (rises or falls):
@@ -171,7 +191,8 @@ def reached(s, r, b, ahead, c, enough):
     """Whether the polynomial of channel c may rise above its extremes, and fall below them."""
     up, down = reach(b, through(r, b, ahead, c, 1.0))
     o = s.sought[c]
-    return up > r.peak[PEAK_MAX, o] + enough, down < r.peak[PEAK_MIN, o] - enough
+    high, low = r.peak[PEAK_MAX, o] + enough, r.peak[PEAK_MIN, o] - enough
+    return up > kept_as(s, r, c, high), down < kept_as(s, r, c, low)
 
 
 @internal
@@ -194,22 +215,30 @@ def search(s, r, b, setting, method, what):
     missed.  A polynomial that is much surer than that is taken at its word.
     """
     ahead, c, sign, enough = what
-    o, aside_before = s.sought[c], False
+    o, aside_before, near = s.sought[c], False, nearest(s, r, c, sign)
     for _ in range(TRIES):
-        best = r.peak[PEAK_MAX, o] if sign > 0.0 else -r.peak[PEAK_MIN, o]
+        known = r.peak[PEAK_MAX, o] if sign > 0.0 else r.peak[PEAK_MIN, o]
+        wanted = sign * kept_as(s, r, c, known + sign * enough)
         n = through(r, b, ahead, c, sign)
         low, high = b.node[0, 1], b.node[0, 0]
-        place, promised = top(b, n, low, high, best + enough)
-        if not promised > best + enough:
+        place, promised = top(b, n, low, high, wanted)
+        if sign < 0.0 and squared(s, r, c):
+            place, promised = sharper(b, n, low, high, (place, promised))
+        if not promised > wanted:
             break
-        if known_place(b, low, high, place):  # its places lie so that it says little of this one
+        # its places lie so that it says little of this one
+        if known_place(b, low, high, place, near):
             place = aside(b, low, high, place)
-            if aside_before or known_place(b, low, high, place):
+            if aside_before or known_place(b, low, high, place, near):
                 break
             aside_before = True
         said = polynomial(b.node, n, place, 0.0)
-        if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
-            extreme(r, o, place, sign * said, b.firm[0])
+        allowed = enough
+        if squared(s, r, c):  # the root of the least square is of what a polynomial leaves over
+            allowed = wanted - kept_as(s, r, c, known) if sign > 0.0 else 0.0
+        sure = n >= POINTS and promised - said < SURE * allowed
+        if sure and settled(b.node, n, place, allowed):
+            extreme(r, o, place, value_of(s, r, c, sign * said), b.firm[0])
             break
         if b.n_found >= b.found.size:
             break
@@ -237,6 +266,7 @@ def look(s, r, b, setting, method, where):
         b.astray = 1
         return
     gather(s, b.full, s.out, b.inside[k])
+    square(s, r, b.inside[k])
     known_extremes(s, r, b, place)
     b.n_found, b.found[k] = k + 1, place
 
@@ -270,4 +300,5 @@ def guess(s, r, b, method, ahead, inner):
         evaluate_inside(s, r, t + u * h, b.y2, b.rough)
         measure(s, t + u * h, b.y2, work + u * done, r.energy_0)
         gather(s, b.full, s.out, b.inside[i])
+        square(s, r, b.inside[i])
         b.n_found, b.found[i] = i + 1, t + u * h

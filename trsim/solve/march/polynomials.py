@@ -11,11 +11,12 @@ is made once: the products (x - t0) ... (x - ti) at PARTS + 1 places between the
 from math import sqrt
 
 from trsim.kernels.lazy import internal
-from trsim.solve.march.record import PARTS, POINTS
+from trsim.solve.march.record import PARTS
 
 ENOUGH = 5  # nodes of a polynomial whose last terms tell how fast they fall
 SLOWEST = 0.9  # rho: terms that fall no faster tell nothing
 ROUNDS = 3  # in which the top of a polynomial is looked for
+SHARPER, CLOSER = 2, 50.0  # more of them where it is looked for closer by, each by so much
 SURE = 0.2  # of what may be missed: a polynomial that doubts no more is believed
 BEFORE = 10.0  # times that: the same of the term before the last
 PLAIN = 0.9  # of the mean slope: what changes in it less leaves its sign
@@ -168,9 +169,26 @@ def higher(b, n, start, end, known):
             value = polynomial(node, n, x, doubt)
             if value > best:
                 best, place = value, x
-    low, high = max(start, place - width), min(end, place + width)
+    if place in (start, end):
+        return beside_end(b, n, place, width if place == start else -width, best)
+    return vertex(b, n, max(start, place - width), min(end, place + width), (place, best))
+
+
+@internal
+def sharper(b, n, start, end, known):
+    """`top` once more, closer by: of a square whose root is asked for, where it is next to zero."""
+    for k in range(1, SHARPER + 1):
+        width = (end - start) * CLOSER**-k / PARTS
+        near = max(start, known[0] - width), min(end, known[0] + width)
+        known = vertex(b, n, near[0], near[1], known)
+    return known
+
+
+@internal
+def vertex(b, n, low, high, known):
+    """The vertex of the parabola through a known place and two around it, if it is higher."""
+    node, doubt, (place, best) = b.node, b.doubt, known
     if low < place < high:
-        # the vertex of the parabola through the last three
         f0, f2 = polynomial(node, n, low, doubt), polynomial(node, n, high, doubt)
         left, right = (best - f0) / (place - low), (best - f2) / (high - place)
         if left + right > 0.0:
@@ -179,6 +197,23 @@ def higher(b, n, start, end, known):
             if value > best:
                 best, place = value, x
     return place, best
+
+
+@internal
+def beside_end(b, n, end, width, best):
+    """`top` where the first or last place is the best one of all: the vertex may lie between it and
+    the next.  width: from there to the next place, or a negative one."""
+    node, doubt = b.node, b.doubt
+    half = polynomial(node, n, end + 0.5 * width, doubt)
+    whole = polynomial(node, n, end + width, doubt)
+    first, second = half - best, whole - half
+    rise, bend = 1.5 * first - 0.5 * second, second - first  # f = best + 2 rise u + 2 bend u^2
+    if rise > 0.0 and bend < 0.0:
+        place = end - 0.5 * rise / bend * width
+        value = polynomial(node, n, place, doubt)
+        if value > best:
+            return place, value
+    return end, best
 
 
 @internal
@@ -214,9 +249,9 @@ def apart(node):
 
 
 @internal
-def settled(node, place, enough):
+def settled(node, n, place, enough):
     """Whether the last but one term of the polynomial is small too: of a channel that swings faster
     than it is sampled the last one passes zero by chance."""
-    with_it = polynomial(node, POINTS - 1, place, 0.0)
-    without = polynomial(node, POINTS - 2, place, 0.0)
+    with_it = polynomial(node, n - 1, place, 0.0)
+    without = polynomial(node, n - 2, place, 0.0)
     return abs(with_it - without) < BEFORE * SURE * enough

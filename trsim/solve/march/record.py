@@ -48,7 +48,8 @@ IMPACT = 9.0
 MOST_BLOWS = 1000  # impacts at one instant
 
 
-POINTS = 6  # samples of every channel that are kept: see peaks.py
+# samples of every channel that are kept, see peaks.py; where those inside steps are exact, too
+POINTS, EXACT_POINTS = 6, 14
 PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, N_PEAK = range(5)
 
 

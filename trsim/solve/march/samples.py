@@ -4,6 +4,11 @@ Samples are values at the ends of steps and at output rows inside them, POINTS o
 ring.  Their divided differences f[t0], f[t0, t1], ... are kept too, newest first: one pass over all
 channels for each sample.
 
+What kinematic analysis finds inside steps is exact, and no error of a dense output bends what goes
+through it.  There more samples are kept (EXACT_POINTS), what was found between two is a sample of
+its own from then on, and of magnitudes the squares are kept, which have no kink where a vector
+passes zero.
+
 Between two neighbours polynomials are in Newton's form with the later of the two first, the earlier
 one second, then what was found between them, then the sample behind them if there is one, then
 older ones:
@@ -21,13 +26,17 @@ from math import sqrt
 from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.outputs import measure
 from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import copy_to
 from trsim.solve.march.land import limits_to_measure
 from trsim.solve.march.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, invert, lay
-from trsim.solve.march.record import PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, POINTS
+from trsim.solve.march.record import PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T
 
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
-NEAR = 1e-4  # of it: an extreme so near a known place is known
+# of it: an extreme so near a known place is known; where samples are exact
+NEAR, NEAREST = 1e-4, 1e-5
 AWAY = 0.1  # of the way to the next known place
+APART = 0.1  # of the time between two samples: what was found so near to one of them is none
+YOUNG = 3  # samples since an event: with no more what lies between them is looked at in any case
 NOT_LAID = -1
 LEAST = 1e-300  # not to divide zero by zero
 # times the error of a polynomial next to a sample where its channel turns back, or that no sample
@@ -47,6 +56,7 @@ def behind(s, r, b, t):
 def restart(s, r, b, t):
     """Begin anew with the channels in s.out."""
     gather(s, b.full, s.out, r.sample[0])
+    square(s, r, r.sample[0])
     b.firm[0] = firmness(s)
     known_extremes(s, r, b, t)
     for c in range(s.sought.size):
@@ -63,9 +73,11 @@ def push(s, r, b, at, values):
     head, known = r.newest, r.n_samples
     own = known < 2 or at - r.sampled[head] > CLOSE * (r.sampled[head] - r.sampled[older(r, 1)])
     if own:
-        r.newest, r.n_samples = (head + 1) % POINTS, min(known + 1, POINTS)
+        most = r.sampled.size
+        r.newest, r.n_samples = (head + 1) % most, min(known + 1, most)
     new = r.newest
     gather(s, b.full, values, r.sample[new])
+    square(s, r, r.sample[new])
     r.sampled[new] = at
     if own:
         take(r, b)
@@ -77,7 +89,7 @@ def push(s, r, b, at, values):
 @internal
 def older(r, k):
     """Where in the ring the sample is that is k older than the newest."""
-    return (r.newest + POINTS - k) % POINTS
+    return (r.newest + r.sampled.size - k) % r.sampled.size
 
 
 @internal
@@ -102,10 +114,43 @@ def take(r, b):
 @internal
 def anew(r, b):
     """The divided differences made again, where the newest sample was replaced."""
-    head, known = r.newest, r.n_samples
+    head, known, most = r.newest, r.n_samples, r.sampled.size
     for k in range(known):
-        r.newest, r.n_samples = (head + POINTS + 1 - known + k) % POINTS, k + 1
+        r.newest, r.n_samples = (head + most + 1 - known + k) % most, k + 1
         take(r, b)
+
+
+@internal
+def keep_found(r, b):
+    """What was found between the two samples before the newest becomes samples of its own, where it
+    is not next to one."""
+    near, kept = APART * (r.sampled[older(r, 1)] - r.sampled[older(r, 2)]), 0
+    for k in range(b.n_found):
+        if kept == r.sampled.size // 2:  # both samples stay
+            break
+        place, behind = b.found[k], 1
+        while r.sampled[older(r, behind)] > place:
+            behind += 1
+        next_ones = r.sampled[older(r, behind)], r.sampled[older(r, behind - 1)]
+        if min(place - next_ones[0], next_ones[1] - place) > near:
+            put_in(r, behind, place, b.inside[k])
+            kept += 1
+    if kept > 0:
+        anew(r, b)
+
+
+@internal
+def put_in(r, behind, place, values):
+    """A sample between those that are `behind` - 1 and `behind` older than the newest."""
+    most = r.sampled.size
+    r.newest, r.n_samples = (r.newest + 1) % most, min(r.n_samples + 1, most)
+    for k in range(behind):
+        to, off = older(r, k), older(r, k + 1)
+        r.sampled[to] = r.sampled[off]
+        copy_to(r.sample[to], r.sample[off])
+    own = older(r, behind)
+    r.sampled[own] = place
+    copy_to(r.sample[own], values)
 
 
 @internal
@@ -119,6 +164,57 @@ def gather(s, full, values, sought):
         full[s.n_out + k] = sqrt(x * x + y * y + z * z)
     for k in range(sought.size):
         sought[k] = full[s.sought[k]]
+
+
+@internal
+def square(s, r, sought):
+    """Of magnitudes their squares, which have no kink where a vector passes zero; where samples
+    are exact only: nothing else resolves the square."""
+    for c in range(sought.size):
+        if squared(s, r, c):
+            sought[c] *= sought[c]
+
+
+@internal
+def squared(s, r, c):
+    """Whether the square of the c-th channel that is sought is kept."""
+    return r.driven > 0 and s.sought[c] >= s.n_out
+
+
+@internal
+def kept_as(s, r, c, value):
+    """What is kept of a value of the c-th channel that is sought; less than any of one below zero
+    of a magnitude."""
+    if not squared(s, r, c):
+        return value
+    return value * value if value > 0.0 else -1e300
+
+
+@internal
+def nearest(s, r, c, sign):
+    """How near to a known place an extreme is known too: as near as its channel is flat there, and
+    next to where a vector passes zero its magnitude is not."""
+    if r.driven == 0:
+        return NEAR
+    return NEAREST * NEAREST if sign < 0.0 and squared(s, r, c) else NEAREST
+
+
+@internal
+def value_of(s, r, c, kept):
+    """The value that is kept so."""
+    return sqrt(max(kept, 0.0)) if squared(s, r, c) else kept
+
+
+@internal
+def constant(r, c, rough):
+    """Whether all samples of channel c are the same to rounding, which polynomials enlarge."""
+    if r.driven == 0:
+        return False
+    high = low = r.sample[r.newest, c]
+    for k in range(1, r.n_samples):
+        value = r.sample[older(r, k), c]
+        high, low = max(high, value), min(low, value)
+    return r.n_samples > YOUNG and high - low <= rough
 
 
 @internal
@@ -160,7 +256,7 @@ def firmness(s):
 def nodes(r, b, ahead):
     """Fill the times of b.node for polynomials between two neighbours; how many there are."""
     times, found = b.node[0], b.n_found
-    n = min(r.n_samples + found, POINTS)
+    n = min(r.n_samples + found, r.sampled.size)
     times[0], times[1] = r.sampled[older(r, ahead)], r.sampled[older(r, ahead + 1)]
     for k in range(2, min(2 + found, n)):
         times[k] = b.found[k - 2]
@@ -215,9 +311,10 @@ def bounds(r, b, ahead):
 
 
 @internal
-def known_place(b, start, end, place):
-    """Whether the channels are known at this place between two samples."""
-    near = NEAR * (end - start)
+def known_place(b, start, end, place, near):
+    """Whether the channels are known next to this place between two samples: within `near` of their
+    distance."""
+    near = near * (end - start)
     if place - start < near or end - place < near:
         return True
     for k in range(b.n_found):  # noqa: SIM110 - a generator does not compile
@@ -246,7 +343,7 @@ def through(r, b, ahead, c, sign):
     """
     found, values, slope = b.n_found, b.node[1], b.node[2]
     end, start = older(r, ahead), older(r, ahead + 1)
-    if found > POINTS - 2:
+    if found > r.sampled.size - 2:
         values[0], values[1] = sign * r.sample[end, c], sign * r.sample[start, c]
         b.node[0, 0], b.node[0, 1] = r.sampled[end], r.sampled[start]
         n = around_best(b, found, c, sign)
@@ -256,7 +353,7 @@ def through(r, b, ahead, c, sign):
         differences(b, n)
         doubt(b, n, 1.0)
         return n
-    n, surer = min(r.n_samples + found, POINTS), 1.0
+    n, surer = min(r.n_samples + found, r.sampled.size), 1.0
     if ahead == 0 or turns(r, ahead, c) or turns(r, ahead + 1, c):
         surer = TURNED
     if b.laid != found:
@@ -303,19 +400,19 @@ def around_best(b, found, c, sign):
         x = b.found[k]
         low = x if low < x < place else low
         high = x if place < x < high else high
-    n = 0
+    n, most = 0, b.node.shape[1]
     for k in range(-2, found):
         x = end if k == -2 else start if k == -1 else b.found[k]
         value = last if k == -2 else first if k == -1 else sign * b.inside[k, c]
         # those of the interval first, then the others by their distance to its middle
-        at = min(n, POINTS)
+        at = min(n, most)
         while at > 0 and further(times[at - 1], x, low, high):
-            if at < POINTS:
+            if at < most:
                 times[at], values[at] = times[at - 1], values[at - 1]
             at -= 1
-        if at < POINTS:
+        if at < most:
             times[at], values[at] = x, value
-            n += 1 if n < POINTS else 0
+            n += 1 if n < most else 0
     return n
 
 

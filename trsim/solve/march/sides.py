@@ -12,7 +12,7 @@ from trsim.assemble.projection import project_positions
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.scene import Scene
 from trsim.kernels.signatures import float64
-from trsim.solve.march.record import BUFFERS, Buffers, Record
+from trsim.solve.march.record import BUFFERS, EXACT_POINTS, PARTS, Buffers, Record
 from trsim.solve.methods.dense_lu import factorise_real
 
 
@@ -37,10 +37,16 @@ def side(s, b):
     return sign
 
 
-def with_square(b: Buffers, work: Scene) -> Buffers:
-    """The buffers with room for J."""
-    n = work.n_v
-    return Buffers(b, square=np.zeros((n, n)), swaps=np.zeros(n, np.int64))
+def with_room(r: Record, b: Buffers, work: Scene) -> tuple[Record, Buffers]:
+    """The record with more samples, since those inside steps are exact, and the buffers with room
+    for J."""
+    n, points = work.n_v, EXACT_POINTS
+    samples = {"sample": np.zeros((points, len(work.kin))), "sampled": np.zeros(points)}
+    r = Record(r, **samples, slope=np.zeros((points, len(work.kin))))
+    r.driven = 1
+    nodes = {"node": np.zeros((5, points)), "lattice": np.zeros((points, 1 + PARTS))}
+    square = {"square": np.zeros((n, n)), "swaps": np.zeros(n, np.int64)}
+    return r, Buffers(b, **nodes, inverse=np.zeros((points, points)), **square)
 
 
 def keep_side(work: Scene, r: Record, b: Buffers) -> bool:
@@ -48,7 +54,7 @@ def keep_side(work: Scene, r: Record, b: Buffers) -> bool:
     counted = work.status.copy()
     project_positions(work, float(r.t), r.y.copy())
     singular = work.status[0] == SINGULAR
-    r.driven, r.side = 1, 0.0 if singular else side(work, b)
+    r.side = 0.0 if singular else side(work, b)
     r.least_pivot = smallest_pivot.python(work) if work.near_rows > 0.0 else 1.0
     work.status[:] = counted
     return bool(r.side != 0.0)
