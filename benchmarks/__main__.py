@@ -7,6 +7,7 @@ NAMES = (
     *("startup", "memory", "reverser", "reverser_ideal", "reverser_steps", "reverser_table"),
     *("rods", "skipping", "sweeps"),
     *("slider_crank", "andrews", "pendulum", "windows", "chain", "stiff_chain", "chains"),
+    "contacts",
     *("flexible_pendulum", "spatial", "turns"),
 )
 

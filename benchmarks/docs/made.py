@@ -77,6 +77,7 @@ MADE: dict[str, Made] = {
     ),
     "chain": bench("chain"),
     "chains": bench("chains"),
+    "contacts": bench("contacts", way="tables"),
     "windows": bench("windows"),
     "flexible_pendulum": bench("flexible_pendulum"),
     "sweeps": bench("sweeps", "trsim/sweeps"),

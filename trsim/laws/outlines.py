@@ -12,7 +12,18 @@ What is round outside and straight sides are convex, so no two places far apart 
 from math import inf, sqrt
 
 from trsim.kernels.lazy import internal
-from trsim.laws.surfaces import GROUP, PROFILE, ROUNDING, SIZE, STRAIGHT, off_piece
+from trsim.laws.surfaces import (
+    HEAD,
+    NODE,
+    PROFILE,
+    ROUNDING,
+    SIZE,
+    STRAIGHT,
+    following,
+    leaf,
+    off_piece,
+    to_piece,
+)
 
 
 @internal
@@ -49,25 +60,55 @@ def from_place(x, y, a, b):
 def beside_profile(tab, o, a, b):
     """The same of a closed profile that is round outside.
 
-    Groups that are further away than another one at most is are not looked at.
+    Of two children of a node the nearer one is looked at first.  Nodes that are further away than
+    another one at most is are left out: behind the side there are arcs that have its direction too.
     """
-    groups, surely = int(tab[o]), inf
-    if groups > 1:
-        for g in range(groups):
-            place = o + 1 + GROUP * g
-            far, _, _, _ = from_place(tab[place], tab[place + 1], a, b)
-            surely = min(surely, far + tab[place + 2])
-    nearest, at = inf, 0.0
-    for g in range(groups):
-        place = o + 1 + GROUP * g
-        far, _, _, _ = from_place(tab[place], tab[place + 1], a, b)
-        if groups > 1 and far - tab[place + 2] > min(surely, nearest):
-            continue
-        first = o + int(tab[place + 3])
-        for k in range(int(tab[place + 4])):
-            s, u = off_arc(tab, first + SIZE * k, a, b)
-            if s < nearest:
-                nearest, at = s, u
+    node, leaves = 1, 1 << int(tab[o + 1])
+    while node < leaves:
+        node *= 2
+        if to_ball(tab, o, node + 1, a, b)[0] < to_ball(tab, o, node, a, b)[0]:
+            node += 1
+    far, radius = to_ball(tab, o, node, a, b)
+    surely = far + radius
+    nearest, at = in_leaf(tab, o, node - leaves, a, b, (inf, 0.0))
+    while node > 1:
+        top = node ^ 1
+        node >>= 1
+        k = top
+        while k > 0:
+            far, radius = to_ball(tab, o, k, a, b)
+            if far - radius > min(surely, nearest):
+                k = following(k, top)
+            elif k < leaves:
+                k *= 2
+            else:
+                nearest, at = in_leaf(tab, o, k - leaves, a, b, (nearest, at))
+                k = following(k, top)
+    return nearest, at
+
+
+@internal
+def to_ball(tab, o, node, a, b):
+    """How far a side is from the middle of the box of a node, and how far its corners are."""
+    k = o + HEAD + NODE * (node - 1)
+    u, v = tab[k], tab[k + 1]
+    along, across = 0.5 * (tab[k + 4] + tab[k + 3]), 0.5 * (tab[k + 6] + tab[k + 5])
+    wide, high = 0.5 * (tab[k + 4] - tab[k + 3]), 0.5 * (tab[k + 6] - tab[k + 5])
+    far, _, _, _ = from_place(u * along - v * across, v * along + u * across, a, b)
+    return far, sqrt(wide * wide + high * high)
+
+
+@internal
+def in_leaf(tab, o, k, a, b, known):
+    """How far a side is from the nearest piece of a leaf, and u, if it is nearer than what is
+    known."""
+    nearest, at = known
+    place, end = leaf(tab, o, k)
+    while place < end:
+        s, u = off_arc(tab, place, a, b)
+        if s < nearest:
+            nearest, at = s, u
+        place += SIZE
     return nearest, at
 
 
@@ -75,11 +116,17 @@ def beside_profile(tab, o, a, b):
 def off_arc(tab, place, a, b):
     """How far a side is from a piece, and u; inf where it lies in no direction of it."""
     if tab[place] == STRAIGHT:  # shorter than anybody sees: its ends are those of arcs
-        _, s, _, _ = off_piece(tab, place, 1, a[0], a[1])
-        _, t, _, _ = off_piece(tab, place, 1, b[0], b[1])
-        s, t = s if s > 0.0 else inf, t if t > 0.0 else inf
+        s, t = in_front(tab, place, a), in_front(tab, place, b)
         return (s, 0.0) if s <= t else (t, 1.0)
     far, x, y, u = from_place(tab[place + 1], tab[place + 2], a, b)
     if far == 0.0 or x * tab[place + 4] + y * tab[place + 5] < (tab[place + 6] - ROUNDING) * far:
         return inf, 0.0
     return far - tab[place + 3], u
+
+
+@internal
+def in_front(tab, place, p):
+    """How far a point is in front of a straight piece; inf where it is beside it or behind it."""
+    far = to_piece(tab, place, p[0], p[1])
+    s, _, _ = off_piece(tab, place, 1, p[0], p[1])
+    return far if s > 0.0 else inf

@@ -10,17 +10,19 @@ The ball through p and q that has the normal n of the line at p has the radius
 The least of them over all p and q is the largest ball that touches no second place.
 """
 
-from math import acos, cos, inf, pi, tan
+from math import acos, ceil, cos, inf, log2, pi, tan
 from typing import Any, NamedTuple
 
-from trsim.laws.surfaces import EDGE, GROUP, HOLLOW, ROUND, SIZE, STRAIGHT
+from trsim.laws.surfaces import EDGE, HEAD, HOLLOW, ROUND, STRAIGHT
 
 SAME = 1e-9  # of the size of a profile: places that are one
 PLAIN = 1e-7  # rad: what turns by less goes straight on
 BACK = 1e-6  # rad: what turns by so little less than half a turn turns back on itself
 SAMPLES, LEAST = 1000, 8  # places along a profile, for its reach, and along each piece
+SURE = 0.8  # of the ball that fits as those places tell: such a one fits indeed
 NEXT = 1e-6  # of its size: where one piece ends and the next begins
 FEW = 16  # pieces: they are looked at one by one
+EACH = 4  # of more: pieces of a leaf, at most
 MOST = 20_000  # pieces of a spline
 STILL = 1e-9  # of the rate along a spline by its chords: it stands still there
 FLAT = 1e-7  # rad: an arc that turns by less is straight
@@ -171,42 +173,91 @@ def put_together(
     if not closed:
         edges += [Edge(p[0], None, way[0]), Edge(p[-1], way[-1], None, len(pieces) - 1)]
         sharp = 0.0
-    made = finished(pieces, edges, sharp, side)
-    return made._replace(reach=0.0, inward=tuple(inner)) if inner else made
+    return finished(pieces, edges, sharp, side, tuple(inner))
 
 
 def finished(
-    pieces: list[tuple[float, ...]], edges: list[Edge], sharp: float, side: int
+    pieces: list[tuple[float, ...]],
+    edges: list[Edge],
+    sharp: float,
+    side: int,
+    inward: tuple[int, ...] = (),
 ) -> Profile:
     """The profile of pieces one behind the other, and of places where they meet at an angle."""
     places, normals = sampled(pieces)
-    if not edges and all(piece[0] in (STRAIGHT, ROUND if side > 0 else HOLLOW) for piece in pieces):
+    if inward:
+        reach = 0.0
+    elif not edges and all(
+        piece[0] in (STRAIGHT, ROUND if side > 0 else HOLLOW) for piece in pieces
+    ):
         reach = inf  # outside of what is convex
     else:
         reach = min(fits(places, side * normals), fits_on_edges(edges, places))
-    return Profile(numbers_of(pieces, edges), sharp, reach, places, pieces, edges)
+    numbers = numbers_of(pieces, edges, side * SURE * reach)
+    return Profile(numbers, sharp, reach, places, pieces, edges, inward)
 
 
-def numbers_of(pieces: list[tuple[float, ...]], edges: list[Edge]) -> list[float]:
-    """The numbers of laws/surfaces.py of pieces and edges."""
-    return grouped([*pieces, *((EDGE, *edge.place, 0.0, 0.0, 0.0, 0.0) for edge in edges)])
+def numbers_of(
+    pieces: list[tuple[float, ...]], edges: list[Edge], sure: float = 0.0
+) -> list[float]:
+    """The numbers of laws/surfaces.py of pieces and edges; sure: of a ball that fits."""
+    lone = [(EDGE, *map(float, edge.place), 0.0, 0.0, 0.0, 0.0) for edge in edges]
+    every, depth = [*pieces, *lone], 0
+    if len(every) > FEW:
+        every, depth = in_their_places(pieces, lone), ceil(log2(len(every) / EACH))
+    nodes = tree(every, depth)
+    numbers = [float(c) for piece in every for c in piece]
+    return [float(len(every)), float(depth), float(HEAD + len(nodes)), sure, *nodes, *numbers]
 
 
-def grouped(pieces: list[tuple[float, ...]]) -> list[float]:
-    """The numbers of laws/surfaces.py: few pieces in one group, many in about as many groups as
-    there are pieces in each."""
+def in_their_places(
+    pieces: list[tuple[float, ...]], lone: list[tuple[float, ...]]
+) -> list[tuple[float, ...]]:
+    """Pieces in their order, each edge behind the nearest of them, so that leaves are small."""
     import numpy as np
 
-    each = len(pieces) if len(pieces) <= FEW else round(len(pieces) ** 0.5)
-    parts = [pieces[k : k + each] for k in range(0, len(pieces), each)]
-    numbers, first = [float(len(parts))], 1 + GROUP * len(parts)
-    for part in parts:
-        ends = np.array([end for piece in part for end in ends_of(piece)])
-        middle = 0.5 * (ends.min(axis=0) + ends.max(axis=0))
-        far = float(np.linalg.norm(ends - middle, axis=1).max()) * (1.0 + NEXT)
-        numbers += [*middle.tolist(), far, float(first), float(len(part))]
-        first += SIZE * len(part)
-    return [*numbers, *(float(c) for piece in pieces for c in piece)]
+    places = corners_of(pieces)
+    behind: list[list[tuple[float, ...]]] = [[] for _ in pieces]
+    for one in lone:
+        off = np.linalg.norm(places - np.array(one[1:3]), axis=2).min(axis=1)
+        behind[int(np.argmin(off))].append(one)
+    return [one for k, piece in enumerate(pieces) for one in (piece, *behind[k])]
+
+
+def tree(pieces: list[tuple[float, ...]], depth: int) -> list[float]:
+    """The numbers of the nodes of a tree that has the pieces in its leaves.
+
+    The axis of a node is the tangent where its second child begins: points on its two sides are
+    beside pieces on the two sides.  Boxes are NEXT of their size larger than they must be.
+    """
+    import numpy as np
+
+    corners, many, nodes = corners_of(pieces), len(pieces), list[Any]()
+    starts, ways = (np.array(c) for c in zip(*map(beginning, pieces), strict=True))
+    for level in range(depth + 1):
+        first = (np.arange(1 << level) * many) >> level
+        second = (np.arange(1, 2 << level, 2) * many) >> level + 1
+        axis, split = ways[second], np.sum(ways[second] * starts[second], axis=1)
+        u, v = np.repeat(axis, np.diff(first, append=many), axis=0).T[:, :, None]
+        x, y = corners[:, :, 0], corners[:, :, 1]
+        box = []
+        for places in (u * x + v * y, u * y - v * x):
+            box.append(np.minimum.reduceat(places.min(axis=1), first))
+            box.append(np.maximum.reduceat(places.max(axis=1), first))
+        more = NEXT * (box[1] - box[0] + box[3] - box[2])
+        bounds = (
+            side + sign * more for side, sign in zip(box, (-1.0, 1.0, -1.0, 1.0), strict=True)
+        )
+        nodes.append(np.column_stack([axis, split, *bounds]))
+    return [float(c) for c in np.vstack(nodes).ravel()]
+
+
+def corners_of(pieces: list[tuple[float, ...]]) -> Any:
+    """(n, 4, 2) places that each of the pieces lies between."""
+    import numpy as np
+
+    ends = [ends_of(piece) for piece in pieces]
+    return np.array([[*of, *of[-1:] * (4 - len(of))] for of in ends])
 
 
 def ends_of(piece: tuple[float, ...]) -> list[Any]:
@@ -297,14 +348,23 @@ def pieces_as_lines(pieces: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
 
 def start_of(piece: tuple[float, ...]) -> Any:
     """Where a piece begins."""
+    return beginning(piece)[0]
+
+
+def beginning(piece: tuple[float, ...]) -> tuple[Any, Any]:
+    """Where a piece begins, and in which direction it goes on; that of an edge is x."""
     import numpy as np
 
     kind, x, y, a, b, c, d = piece
+    at = np.array([x, y])
     if kind == STRAIGHT:
-        return np.array([x, y])
+        return at, np.array([a, b])
+    if kind == EDGE:
+        return at, np.array([1.0, 0.0])
     out = 1.0 if kind == ROUND else -1.0
     angle = np.arctan2(c, b) + out * acos(d)
-    return np.array([x + a * np.cos(angle), y + a * np.sin(angle)])
+    ray = np.array([np.cos(angle), np.sin(angle)])
+    return at + a * ray, out * np.array([ray[1], -ray[0]])
 
 
 def two_arcs(p: Any, d: Any, q: Any, e: Any) -> list[tuple[float, ...]]:
