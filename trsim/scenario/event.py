@@ -2,16 +2,16 @@
 
     g = sensor - value,  g = t - value          an event is a root of g, from the side asked for
 
-The step ends on the root.  What the event does is done there, all at one instant: the constraints
-become those of the new stage, and the velocities go to the nearest ones that satisfy them,
+The step ends on the root.  All actions of the event happen there, at one instant: the constraints
+become those of the new stage, and the velocities change to the nearest ones that satisfy them,
 
-    v+ = v- - M^-1 J^T (J M^-1 J^T)^-1 (J v- + Phi_t)          momentum is kept, energy may be lost
+    v+ = v- - M^-1 J^T (J M^-1 J^T)^-1 (J v- + Phi_t)          conserves momentum, may lose energy
 
-The change of kinetic and stored energy is the `work` of the event, and its sum a line of the energy
-book, `energy.work.events`.  Several events at one instant happen in the order of the file.
+The change of kinetic and stored energy is the `work` of the event.  The sum over all events is the
+channel `energy.work.events`.  Several events at one instant happen in the order of the file.
 
-An event counts again once g has left the value by 1e-9 of the mechanism's size, or 1e-9 rad: not
-at a start on the value, and not for a touch that turns back.
+An event can happen again after g has left the value by 1e-9 of the mechanism's size, or 1e-9 rad.
+A start on the value does not count, nor a touch that turns back.
 
     events:
       lug_reached: {when: stroke, value: 120 mm, times: 1, do: {lock: [guide], record: true}}
@@ -64,10 +64,10 @@ def _ending(value: Any) -> Any:
 
 
 class Motion(Spec):
-    """The motion a drive goes on with; in it `t` is the time since the event.
+    """The new motion of a drive; in it `t` is the time since the event.
 
-    position  the coordinate; that of a rigid drive begins where the joint is
-    velocity  its rate; starts from the place prescribed until then, or else that of the joint
+    position  the coordinate; for a rigid drive it must begin at the position of the joint
+    velocity  its rate; starts at the position prescribed until then, or else at that of the joint
     """
 
     type: ClassVar[str] = "motion"
@@ -84,16 +84,16 @@ class Motion(Spec):
 class Actions(Spec):
     """What happens at an event, all of it at once.
 
-    record   a line of all channels in the table `recorded`, as they are when the event happens
-    set      drives that go on with another motion, also those that had let go
-    release  ideal joints that come apart, and drives that let go
-    lock     joints whose coordinate is held from then on; the force is NAME.lock.force
+    record   a line of all channels in the table `recorded`, with the values before the event
+    set      drives that get another motion; a released drive engages again
+    release  ideal joints that come apart, and drives that release their joint
+    lock     joints to hold at their coordinate from then on; the force is NAME.lock.force
     unlock   joints that an event has locked
-    park     bodies that are held where they are, with what hangs on them alone
-    unpark   bodies that were parked
-    apply    forces and load sets that act from then on; what is first applied rests before
-    remove   forces and load sets that act no more
-    end      the run ends here: true, with status `done`, or with the status that is named
+    park     bodies to hold in place, together with bodies connected only to them
+    unpark   parked bodies to set free
+    apply    forces and load sets that act from then on; before the first `apply` they do not act
+    remove   forces and load sets that stop acting
+    end      ends the run: true with status `done`, otherwise with the named status
     """
 
     type: ClassVar[str] = "actions"
@@ -135,13 +135,13 @@ class Actions(Spec):
 
 
 class Event(Spec):
-    """What is done where a sensor, or the time, crosses a value.
+    """What happens when a sensor, or the time, crosses a value.
 
-    when     sensor, or t; or any channel, which is sampled, not bounded
-    value    of it that is crossed
-    crosses  the direction that counts
-    times    how often it happens; whenever it is crossed unless given
-    do       what is done
+    when     a sensor or t; or any channel, which is sampled, not bounded
+    value    the value to cross
+    crosses  the direction of crossing
+    times    how often it can happen; no limit unless given
+    do       what happens
     """
 
     type: ClassVar[str] = "event"

@@ -1,4 +1,4 @@
-"""Phases: load steps in their order, each with what begins it and what ends it.
+"""Phases: load steps in order, each with its changes at the start and the condition that ends it.
 
     phases:
       - {name: lift, drive: {handle: {velocity: 5 deg/s}}, until: {when: latch, value: 60 deg}}
@@ -6,8 +6,8 @@
       - {name: fall, lock: [latch], release: [handle], until: {when: door, value: 113 deg}}
       - {name: away, release: [hinge], for: 0.5 s}
 
-When a scenario is read they become events.  Each thing that ends a phase is one that counts in this
-phase alone, and does what the next phase begins with; behind the last one it ends the run.
+trsim turns phases into events.  Each condition that ends a phase is an event that counts in this
+phase only, and its actions begin the next phase.  In the last phase it ends the run.
 """
 
 from typing import Annotated, Any, ClassVar
@@ -50,9 +50,9 @@ def _lasting(about: str, default: Any) -> Any:
 class Until(Spec):
     """What ends a phase: a sensor, the time or any channel that crosses a value.
 
-    when     sensor, or t; or any channel, which is sampled, not bounded
-    value    of it that is crossed
-    crosses  the direction that counts; what is beyond the value already ends the phase at once
+    when     a sensor or t; or any channel, which is sampled, not bounded
+    value    the value to cross
+    crosses  the direction of crossing; if the value is already passed, the phase ends at once
     """
 
     type: ClassVar[str] = "until"
@@ -61,36 +61,36 @@ class Until(Spec):
     crosses: Crosses = "up"
 
 
-class Stall(_lasting("for  how long it stays so without a break", ...)):  # type: ignore[misc]
-    """When nothing moves any more, so that the phase would never end.
+class Stall(_lasting("for  how long it must stay below without interruption", ...)):  # type: ignore[misc]
+    """When the mechanism counts as at rest, so that the phase would never end.
 
-    energy  the kinetic energy of the mechanism is below it at 17 looks in a row, and so is what its
-            accelerations would make of it from one look to the next
+    energy  limit of the kinetic energy in 17 samples in a row, and of the energy that the
+            accelerations would produce from rest until the next sample
     """
 
     type: ClassVar[str] = "stall"
     energy: Annotated[float, Gt(0), Unit("J")]
 
 
-class Phase(_lasting("for  time after its begin at which it ends", None)):  # type: ignore[misc]
-    """A load step: all it says happens as it begins, and lasts until other phases say otherwise.
+class Phase(_lasting("for  time after its start at which it ends", None)):  # type: ignore[misc]
+    """A load step: its changes happen when it begins, and last until another phase changes them.
 
-    name     what it is called; phase_1, phase_2 and so on unless given
-    static   a static path, which passes from balance to balance as the drives go on; without it
-             the phase is one of motion
-    drive    motions that drives begin; in them `t` is the time since the phase began
-    release  ideal joints that come apart, and drives that let go
-    lock     joints whose coordinate is held
-    unlock   joints that were locked
-    park     bodies that are held where they are, with what hangs on them alone
-    unpark   bodies that were parked
-    apply    forces and load sets that act in this phase, and in no other that does not name them
-    remove   forces and load sets that act no more
-    record   a line of all channels in the table `recorded`, as the phase begins
-    taut     ropes that must not go slack in this phase: else the run ends, with status `slack`
-    stall    when the run ends with status `stalled`, as nothing moves any more
-    until    what ends the phase; of several the first one
-    end      status of the run where it ends with this phase, the last one
+    name     its name; phase_1, phase_2 and so on unless given
+    static   a static path: a sequence of equilibria as the drives advance; otherwise the phase is a
+             motion over time
+    drive    new motions of drives; in them `t` is the time since the phase began
+    release  ideal joints that come apart, and drives that release their joint
+    lock     joints to hold at their coordinate
+    unlock   locked joints to set free
+    park     bodies to hold in place, together with bodies connected only to them
+    unpark   parked bodies to set free
+    apply    forces and load sets that act in this phase, and only in phases that name them
+    remove   forces and load sets that stop acting
+    record   a line of all channels in the table `recorded`, when the phase begins
+    taut     ropes that must not go slack in this phase; otherwise the run ends with status `slack`
+    stall    ends the run with status `stalled` when the mechanism is at rest
+    until    what ends the phase; the first of several counts
+    end      status of the run if it ends with this phase, the last one
     """
 
     type: ClassVar[str] = "phase"

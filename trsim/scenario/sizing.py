@@ -1,4 +1,4 @@
-"""The key `sizing`: a load that takes over what a drive gives."""
+"""The key `sizing`: a load that replaces the force of a drive."""
 
 from typing import Annotated, ClassVar
 
@@ -8,13 +8,13 @@ from trsim.fields import Spec, Unit
 
 
 class Sizing(Spec):
-    """A load that is found, so that a drive is left with no force along its motion.
+    """Find the load that leaves a drive without force along its motion.
 
-    drive   whose force it takes over
-    load    the key that becomes a table, as forces.hand.force
-    of      the sensor it becomes a table of; it rises or falls throughout the motion
-    below   what may be left of the force of the drive, of its largest without the load
-    passes  the most that are made
+    drive   the drive whose force the load replaces
+    load    the key to find, such as forces.hand.force; it becomes a table
+    of      the sensor of this table; it must rise or fall throughout the motion
+    below   the force left in the drive, relative to its largest force without the load
+    passes  the largest number of passes
     """
 
     type: ClassVar[str] = "sizing"

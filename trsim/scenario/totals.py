@@ -1,4 +1,4 @@
-"""The section `totals`: what several bodies weigh together, where one of them takes the rest."""
+"""The section `totals`: the total mass of several bodies, where one of them takes the rest."""
 
 from typing import Annotated, ClassVar
 
@@ -11,13 +11,13 @@ from trsim.fields import Spec, Unit, point
 class Total(Spec):
     """Mass, centre and inertia of several bodies together.
 
-    bodies     which they are, the remainder among them; all unless given
-    mass       of all of them
-    at         their common centre of mass, as drawn; the remainder stays where it is unless given
-    inertia    of all of them about that centre, along the axes in which the scenario is drawn:
-               one about z, three without products or Ixx, Iyy, Izz, Ixy, Ixz, Iyz; the remainder
-               keeps its own unless given
-    remainder  the body whose own numbers are replaced, so that the total is as it says
+    bodies     the bodies, including the remainder; all unless given
+    mass       of all these bodies
+    at         their common centre of mass, as drawn; unless given the remainder keeps its position
+    inertia    of all these bodies about this centre, along the axes of the drawing: one about z,
+               three without products or Ixx, Iyy, Izz, Ixy, Ixz, Iyz; unless given the remainder
+               keeps its own
+    remainder  the body whose own numbers are replaced, so that the total is right
     """
 
     type: ClassVar[str] = "total"
