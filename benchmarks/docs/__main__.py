@@ -59,7 +59,7 @@ def write(name: str, printed: str) -> None:
         for k in range(count):  # places move as the page is written
             text = page.read_text(encoding="utf-8")
             one = [one for one in marks.marked(page, text) if one.name == name][k]
-            body = "\n".join(text.splitlines()[one.first : one.last])
+            body = "".join(f"{line}\n" for line in text.splitlines()[one.first : one.last])
             if MADE[name].way == "tables":
                 body = f"\n{tables[max(one.table, 1) - 1]}\n\n"
             text = marks.replaced(text, one, body)

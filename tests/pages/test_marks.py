@@ -89,6 +89,17 @@ def test_a_table_is_put_where_it_belongs(page):
     assert page.read_text(encoding="utf-8") == again
 
 
+def test_what_a_command_wrote_itself_stays(page, monkeypatch):
+    """Where a command writes the page, or numbers are copied, only the opening mark is renewed."""
+    monkeypatch.setitem(MADE, "made_up", LONG._replace(way="page"))
+    before = page.read_text(encoding="utf-8").splitlines()
+    (page.parent / "src" / "a.py").write_text("x = 2\n", encoding="utf-8", newline="\n")
+    maker.write("made_up", "")
+    after = page.read_text(encoding="utf-8").splitlines()
+    assert before[2] != after[2] and maker.check() == 0
+    assert before[:2] + before[3:] == after[:2] + after[3:]
+
+
 def test_what_is_not_marked_is_found(page):
     text = page.read_text(encoding="utf-8")
     more = "\n| b |\n|---|\n| 2 |\n\n| `c3` |\n|---|\n| x |\n\n![p](p.png)\n\n```sh\n| 7 |\n```\n"
