@@ -58,7 +58,7 @@ def test_example_of_events_runs():
 
 def test_example_of_phases_runs():
     [page] = explained("phases")["sections"]
-    assert "load steps in their order" in page["law"]
+    assert "load steps in order" in page["law"]
     places = {key["place"]: key for key in page["keys"]}
     assert places["phases.for"]["unit"] == "s" and places["phases.stall.energy"]["required"]
     scenario = loads(page["example"])

@@ -238,7 +238,7 @@ class Scenario(Spec):
     totals           what several bodies weigh together, where one of them takes the rest
     sizing           a load that takes over what a drive gives, found by repeated runs
     limits           how many bodies, rows, nodes and entries there may be
-    phases           load steps in their order: what is driven, locked and let go in each, and what
+    phases           load steps in order: what each one drives, locks and releases, and what
                      ends it
     cases            named overrides, each a scenario of a sweep; not used by `run`
     sweep            values of keys to vary, by dotted path; not used by `run`
