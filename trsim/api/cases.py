@@ -8,6 +8,7 @@ import h5py
 
 from trsim.api.hearing import Listener
 from trsim.api.run import Work, made, wanted
+from trsim.api.running import Wanted
 from trsim.api.sweep import planned_of
 from trsim.errors import UsageError, known
 from trsim.sweeps.folder import read_plan
@@ -16,7 +17,9 @@ from trsim.sweeps.ledger import DIGEST, Entry, entries
 from trsim.sweeps.plan import Case, Plan, named_file
 
 
-def again(hears: Listener, folder: Path, names: tuple[str, ...]) -> Iterator[dict[str, Any]]:
+def again(
+    hears: Listener, folder: Path, names: tuple[str, ...], how: Wanted | None = None
+) -> Iterator[dict[str, Any]]:
     """Run cases of the sweep in a folder into their result files; the summary of each.
 
     Raises UsageError for what is no case of it, FileError where there is no sweep to be read.
@@ -34,12 +37,13 @@ def again(hears: Listener, folder: Path, names: tuple[str, ...]) -> Iterator[dic
             raise UsageError(f"{told['source']} has no case '{name}' any more", hint)
         if cases[name].digest != there[name]:
             hears.warn(str(folder), f"{name}: the scenario, or trsim itself, changed since then")
-        yield _one(hears, planned, cases[name], folder)
+        yield _one(hears, planned, cases[name], (folder, how or wanted(())))
 
 
-def _one(hears: Listener, planned: Plan, case: Case, folder: Path) -> dict[str, Any]:
+def _one(hears: Listener, planned: Plan, case: Case, into: tuple[Path, Wanted]) -> dict[str, Any]:
+    folder, how = into
     target = named_file(folder, case.name)
-    summary = made(hears, Work(planned.scenario(case), target, wanted(())))
+    summary = made(hears, Work(planned.scenario(case), target, how))
     with h5py.File(summary["file"], "r+") as file:
         file["provenance"].attrs[DIGEST] = case.digest  # the sweep knows it by this
     entry = entries(folder).get(case.name)

@@ -50,7 +50,10 @@ def command(
     answer.data["runs"] = []
     how = wanted(**options, certify=certify_with or certify, option="--certify-with")
     if (Path(scenarios[0]) / "plan.json").is_file():
-        cases(answer, Path(scenarios[0]), scenarios[1:])
+        if output or how.sets or how.certify:
+            what = f"{scenarios[0]} is the folder of a sweep, whose cases are run as they are"
+            raise UsageError(what, "Leave out -o, --set and --certify.")
+        cases(answer, Path(scenarios[0]), scenarios[1:], how)
         return
     for source, target in targets(scenarios, output):
         try:
@@ -64,7 +67,7 @@ def command(
             answer.fail(failed(source, summary), about=source)
 
 
-def cases(answer: Answer, folder: Path, names: tuple[str, ...]) -> None:
+def cases(answer: Answer, folder: Path, names: tuple[str, ...], how: Any) -> None:
     """Run cases of a sweep again."""
     from trsim.api.cases import again
     from trsim.api.run import failed
@@ -74,7 +77,7 @@ def cases(answer: Answer, folder: Path, names: tuple[str, ...]) -> None:
             f"Name cases of it: trsim run {folder} CASE.  {folder / 'index.csv'} has their names."
         )
         raise UsageError(f"{folder} is the folder of a sweep", hint)
-    for summary in again(answer, folder, names):
+    for summary in again(answer, folder, names, how):
         answer.say(line(summary))
         if summary.get("as_kept"):
             answer.say("its numbers are those that the sweep kept")

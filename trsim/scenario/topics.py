@@ -179,4 +179,7 @@ SWEEP = (  # keys of `sweep` that are no path: word, what it may be, meaning
      "grid, all combinations; zip, side by side; the others draw `samples` from distributions"),
     ("samples", "whole number", "how many are drawn; of sobol a power of two"),
     ("seed", "whole number", "of draws: the same one gives the same cases on every machine"),
+    ("keep", "all | summary", "of every case: its result file, or its numbers only"),
+    ("numbers", "list", "numbers of a run, as in `trsim show`, that are kept of every case too: "
+     "peak:B.contact_force@0.3..0.5"),
 )  # fmt: skip
