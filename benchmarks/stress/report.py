@@ -119,23 +119,25 @@ def draw(cells: list[Cell], path: Path) -> None:
 
 DOC_TEXT = """# Stress: contact far from comfortable
 
-`make stress` runs {n} cells: {cases} cases, each by five methods; rerun it to resume.
-Cases: clearance 1 µm to 5 mm, restitution 0 to 1, friction 0 to 1, speed 0.01 to 10 m/s, contact
-stiffness 1/1000 to 1000 times that of steel, every level equally often in each of five mechanisms:
-the reverser from before the touch of its lug with clearance at one or two pins, the same with
-clearance at both ends of a light rod (0.5 kg and 0.3 kg), and a slider-crank.  Tolerances 1e-4,
-1e-5, 1e-6; steps of rk4 10, 2 and 1 µs.  At most 150 000 steps a run.
+`make stress` runs {n} cells: {cases} cases, each by five methods. Run it again to resume. The
+cases cover clearance from 1 µm to 5 mm, restitution 0 to 1, friction 0 to 1, speed 0.01 to 10
+m/s, and contact stiffness 1/1000 to 1000 times that of steel. Every level occurs equally often in
+each of five mechanisms: the reverser from before the touch of its lug with clearance at one or
+two pins, the same with clearance at both ends of a light rod (0.5 kg and 0.3 kg), and a
+slider-crank. Tolerances are 1e-4, 1e-5 and 1e-6; steps of rk4 10, 2 and 1 µs. A run has at most
+150 000 steps.
 
-The truth of a cell is another method at a tolerance 100 times tighter.  A run and a twin at a fifth
-of its tolerance and another first step part at the *predictability horizon* (a journal's path
-differs by 0.5 % of itself, or a largest force by 1 %); before it the largest force of every contact
-must agree to 2 %.
+The truth of a cell is another method at a tolerance 100 times tighter. A run is also compared
+with a twin, which has a fifth of its tolerance and another first step. At the *predictability
+horizon* the two part: the path of a journal differs by 0.5 % of itself, or a largest force by 1
+%. Before the horizon the largest force of every contact must agree with the truth to 2 %. Before
+a cell counts as wrong, the twin must agree with its own twin too.
 
 * **converged**: done, energy book closed to 1e-3, peaks within 2 % of the truth
 * **refused**: not begun, with the reason
 * **said so**: ended `failed` with a reason, or done with a warning that the energy book is open
-* **unjudged**: done, but no other method got through at the tighter tolerance
-* **WRONG**: done without a word, and not within 2 %
+* **unjudged**: done, but no other method reached the end at the tighter tolerance
+* **WRONG**: done without a warning, and not within 2 %
 
 {mark}
 

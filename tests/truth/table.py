@@ -17,46 +17,61 @@ from .ledger import ROOT, known
 DOC = ROOT / "docs" / "truth.md"
 HEAD = """# Truth: scenes drawn by the thousand
 
-`make truth` draws scenes of every family, runs each through trsim, and judges it in a way that
-shares nothing with trsim's assembly or events: a small integrator of rigid bodies in maximal
-coordinates kept in `tests/truth` (quaternions, dense Cholesky factors, order 8, tolerance 1e-12,
-steps of at most a fiftieth of a turn, every crossing located by making the step again), or one
-angle where that is singular. The families `joints`, `joint_loops`, `geared` and `flat_joints` (all
-kinds of joints in chains and loops, links, gears, racks, worms and couplers on carriers that move)
-are judged in the coordinates of their joints, which take no constraint rows (tests/truth/screws.py:
-products of exponentials of screws). The families
-`surface_contact` and `seal` have their own distances and forces (tests/truth/touches.py);
-`static_path` and `static_cam` are judged by places at which no joint begins to move
-(tests/truth/statics.py), `phases` by both: a static phase, and the motion that follows it. Flexible
-bars are judged by a tight run of another method. The truth is found in units near one and in the
-axes of the drawing; what trsim reads has lengths, masses and times scaled by 1e-3 to
-1e3 and is turned to any direction. Methods, tolerances (1e-2 to 1e-10), numbers of rows and speeds
-are drawn too.
+`make truth` draws random scenes of every family, runs each with trsim, and judges it by a method
+that shares nothing with trsim's assembly or events. Methods, tolerances (1e-2 to 1e-10), numbers
+of rows and speeds are drawn too. The references are:
 
-Wrong: ended `done` with a place, turn, velocity, acceleration, reaction, drive torque, load or work
-off by more than max(100 tolerance, 10 stated error) of the largest of its kind in the scene
-(speeds between rows included; what a run without projection reports as the effect of open joints
-on accelerations, or of the work that projection did, is a stated error), at a row or as a stored
-extreme beside the reference at all ends of its steps (tests/truth/extremes.py), or missed a
-crossing (event, touch, point of a section) that goes deeper than 10 tolerances of the size.
-The bound grows with what a small change of the start grows by, divided by 20 (where a scene would
-be wrong also by what changes of speeds at eight times on the way do): of places and speeds,
-and at single rows of a channel itself, since forces in contacts grow by more. Where it passes the
-whole scale, the horizon of prediction is passed and nothing more is judged; nor,
-before a scene is told to be wrong, behind an instant at which a contact in clearance opens by less
-than a tolerance of the size in one of both and not in the other, since where it opens another
-impact begins, with other damping: such scenes are counted as grazing. Of rk4, whose step is
-chosen, the tolerance is 1e-6 at 200 steps a turn. What is refused is counted: a scene that is valid
-is to run. `told` are scenes that have no motion, whose way is chance without projection, or in
-which a constant-velocity joint folds to half a turn: they were refused as they must be.
-Not compared are reactions of joints with redundant rows, which no rigid body determines, and the
-angle of a hinge in space that came apart, which is a convention.
+* In general a small integrator of rigid bodies in maximal coordinates (`tests/truth`):
+  quaternions, dense Cholesky factors, order 8, tolerance 1e-12, steps of at most a fiftieth of a
+  turn. It locates every crossing by repeating the step. Where this is singular, the reference is
+  one angle.
+* `joints`, `joint_loops`, `geared` and `flat_joints` have all kinds of joints in chains and
+  loops, links, gears, racks, worms and couplers on moving carriers. Their reference uses joint
+  coordinates, which need no constraint rows (tests/truth/screws.py: products of exponentials of
+  screws).
+* `surface_contact` and `seal` have their own distances and forces (tests/truth/touches.py).
+* `static_path` and `static_cam` are judged by positions at which no joint begins to move
+  (tests/truth/statics.py); `phases` by both: a static phase, and the motion that follows it.
+* Flexible bars are judged by a tight run of another method.
 
-`tests/truth/test_broken.py` breaks the bound of events, the look at dropped rows and the rule for
-the turns of angles in a copy of trsim, one at a time, and sees that the scenes find each of them.
+The reference works in units near one and in the axes of the drawing. The scene that trsim reads
+has lengths, masses and times scaled by 1e-3 to 1e3, and is turned to any direction.
 
-`python -m tests.truth FAMILY SEED --show` prints a scene and its judgement; `python -m tests.truth
---table` writes this page.
+**Wrong** is a scene that ends `done` although one of these holds:
+
+* A position, angle, velocity, acceleration, reaction, drive torque, load or work is off by more
+  than max(100 tolerance, 10 stated error) of the largest of its kind in the scene (including
+  speeds between rows). This is tested at the rows, and for stored extremes by comparison with the
+  reference at all ends of its steps (tests/truth/extremes.py). Stated errors include what a run
+  without projection reports: the effect of open joints on accelerations, and the work that
+  projection did.
+* It missed a crossing (event, touch, point of a section) that goes deeper than 10 tolerances of
+  the size.
+
+The bound grows with the growth of a small change of the start, divided by 20. If the scene would
+still be wrong, the growth of changes of speeds at eight times on the way counts too. The growth
+is that of positions and speeds, and at single rows that of the channel itself, because forces in
+contacts grow more. Where the bound exceeds the whole scale, the horizon of prediction is passed
+and nothing more is judged.
+
+Before a scene counts as wrong, one more rule applies. If a contact in clearance opens by less
+than a tolerance of the size in one of the two solutions and not in the other, nothing behind that
+instant is judged: where it opens, another impact begins, with other damping. Such scenes are
+counted as grazing.
+
+For rk4, whose step is chosen, the tolerance is 1e-6 at 200 steps a turn. Refused scenes are
+counted, because a valid scene must run. `told` are scenes without motion, scenes whose way is
+accidental without projection, and scenes in which a constant-velocity joint folds to half a turn:
+they must be refused, and were. Reactions of joints with redundant rows, which rigid bodies do not
+determine, and the angle of a hinge in space that came apart, which is a convention, are not
+compared.
+
+`tests/truth/test_broken.py` breaks the bound of events, the check of dropped rows and the rule
+for the turns of angles in a copy of trsim, one at a time, and verifies that the scenes find each
+of them.
+
+`python -m tests.truth FAMILY SEED --show` prints a scene and its judgement; `python -m
+tests.truth --table` writes this page.
 """
 
 
