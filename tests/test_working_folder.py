@@ -190,7 +190,7 @@ ONE_FIGURE = ("--plot", "B.normal_force : stroke")
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory):
-    """Figures where no settings lie beside the run: all of its report, and one that is asked for."""
+    """Figures where no settings lie beside the run: all of its report, and one asked for."""
     folder = tmp_path_factory.mktemp("alone")
     small.copy(folder / "done.h5")
     for name, asked in (("all", ()), ("one", ONE_FIGURE)):
@@ -200,8 +200,11 @@ def alone(tmp_path_factory):
 
 @pytest.mark.parametrize("settings", OTHER_SETTINGS)
 def test_figures_do_not_depend_on_settings_of_the_folder(settings, alone, tmp_path):
-    """matplotlib reads a file matplotlibrc of it, were it not imported elsewhere.  It reads it as it
-    is imported: one figure shows that a bad one is not read, all show that a good one is not."""
+    """matplotlib reads a file matplotlibrc of it, were it not imported elsewhere.
+
+    It would be read with the import: one figure shows that a bad one is not, all show it of a good
+    one.
+    """
     small.copy(tmp_path / "done.h5")
     if OTHER_SETTINGS[settings] is None:
         os.mkfifo(tmp_path / "matplotlibrc")
