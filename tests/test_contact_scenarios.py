@@ -16,8 +16,9 @@ from trsim.solve.march.record import (
     ONSET,
     SEPARATION,
 )
+from trsim.statuses import WELL
 
-from .runs import run
+from .runs import energy_error, run
 
 VALIDATION = Path(__file__).parents[1] / "scenarios" / "validation"
 
@@ -127,6 +128,7 @@ def test_a_wedge(half, stays):
 
 def test_a_cam_throws_its_flat_follower_off():
     r = go("cam_flat_contact", "output.every=1 ms")
+    assert r.outcome.status in WELL and np.isfinite(r.rows).all() and energy_error(r) < 1e-4
     turn, w = 29.8 * r.t + 0.05 * r.t**2, 29.8 + 0.1 * r.t
     a, b, m, P = 0.04, 0.03, 0.3, 0.3 * 15.75
     h = np.sqrt((a * np.sin(turn)) ** 2 + (b * np.cos(turn)) ** 2)

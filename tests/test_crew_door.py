@@ -145,7 +145,7 @@ def test_first_contact_and_the_gap():
     """The roller meets the guide 5 deg of the latch earlier with a gap of 1.3 mm at Stop1."""
     met = {}
     for gap in ("0", "0.0013"):
-        r = door("lifting_path", f"parameters.stop1_gap={gap}", "solver.end=5", "output.every=0.02")
+        r = door("lifting_path", f"parameters.stop1_gap={gap}", "solver.end=5", "output.every=0.05")
         force = r["fwd_guide.normal_force"]
         met[gap] = np.degrees(r["latch_angle"][np.flatnonzero(force > 0.0)[0]])
         assert (r["wire.force"] == 0.0).all() and (r["fwd_landing.normal_force"] == 0.0).all()

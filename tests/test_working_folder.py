@@ -184,20 +184,37 @@ OTHER_SETTINGS = {
 }
 
 
+REPORT = [sys.executable, "-P", "-m", "trsim", "report", "done.h5"]
+ONE_FIGURE = ("--plot", "B.normal_force : stroke")
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory):
+    """Figures where no settings lie beside the run: all of its report, and one asked for."""
+    folder = tmp_path_factory.mktemp("alone")
+    small.copy(folder / "done.h5")
+    for name, asked in (("all", ()), ("one", ONE_FIGURE)):
+        assert ended(folder, REPORT, *asked, "-o", name)[0] == 0
+    return folder
+
+
 @pytest.mark.parametrize("settings", OTHER_SETTINGS)
-def test_figures_do_not_depend_on_settings_of_the_folder(settings, tmp_path):
-    """matplotlib reads a file matplotlibrc of it, were it not imported elsewhere."""
+def test_figures_do_not_depend_on_settings_of_the_folder(settings, alone, tmp_path):
+    """matplotlib reads a file matplotlibrc of it, were it not imported elsewhere.
+
+    It would be read with the import: one figure shows that a bad one is not, all show it of a good
+    one.
+    """
     small.copy(tmp_path / "done.h5")
-    report = [sys.executable, "-P", "-m", "trsim", "report", "done.h5", "-o"]
-    assert ended(tmp_path, report, "alone")[0] == 0
     if OTHER_SETTINGS[settings] is None:
         os.mkfifo(tmp_path / "matplotlibrc")
     else:
         (tmp_path / "matplotlibrc").write_bytes(OTHER_SETTINGS[settings])
-    code, said = ended(tmp_path, report, "beside", TRSIM_DEBUG="1")
+    name, asked = ("all", ()) if settings == "of others" else ("one", ONE_FIGURE)
+    code, said = ended(tmp_path, REPORT, *asked, "-o", "beside", TRSIM_DEBUG="1")
     assert code == 0, said
     assert "matplotlibrc" not in said
-    figures = sorted((tmp_path / "alone").glob("*.png"))
+    figures = sorted((alone / name).glob("*.png"))
     assert figures
     for figure in figures:
         assert (tmp_path / "beside" / figure.name).read_bytes() == figure.read_bytes()

@@ -37,7 +37,10 @@ LINK = "  b: {type: link, bodies: [crank, slider], points: [[0.1, 0.06], [0.4, 0
 @pytest.mark.parametrize("method", METHODS)
 def test_a_rod_without_mass_is_a_link(method):
     loose = 1e-4 if method == "generalized_alpha" else 1e-7
-    own = run(loads(ENGINE.format(ROD, PINS, f"method: {method}")))
+    # at 1e-9 the one of order two makes millions of steps, scipy's Radau thousands in Python
+    looser = {"generalized_alpha": "1e-7", "scipy:Radau": "1e-8"}.get(method, "1e-9")
+    sets = (f"solver.tolerance={looser}",)
+    own = run(loads(ENGINE.format(ROD, PINS, f"method: {method}"), sets))
     link = run(loads(ENGINE.format("", LINK, "method: dop853")))
     assert own.mechanism.mobility == 1
     for name, size in (("crank.angular_velocity", 10), ("slider.velocity", 1)):
