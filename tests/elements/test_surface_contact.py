@@ -1,6 +1,8 @@
 """Surface contact: balls, rollers and points on surfaces, against closed forms."""
 
+import json
 from math import cos, sin, sqrt, tau
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from ..runs import built, energy_error, run
 from .bench import bench, check_action_is_reaction, check_gradient, check_power
 
 G = 9.81
+DATA = Path(__file__).parents[1] / "data"
 L = "points: [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], closed: true, corner_radius: 0.4"
 FREE = "at: [0.2, 0.1, 0.3], x_axis: [1, 0.2, 0.1], y_axis: [0, 1, 0.4]"
 SHAPES = {
@@ -570,3 +573,25 @@ solver: {{end: 0.3}}
 def test_bristles_begin_every_touch_unbent_in_both_directions(normal):
     along, across = (run(BOUNCING.format(v=v, normal=normal)) for v in ([2, 0, 0], [0, 0, 2]))
     assert across["ball.velocity"][:, 2] == pytest.approx(along["ball.velocity"][:, 0], abs=1e-6)
+
+
+def test_a_ball_dropped_on_a_floor_of_impact():
+    """By an independent integration of m y'' = IMPACT - m g, see tests/data."""
+    told = json.loads((DATA / "impact_and_bistop.json").read_text())["impact_ball"]
+    high = 0.05 + told["h0"]
+    r = run(f"""
+bodies: {{ball: {{mass: {told["m"]}, inertia: 1e-3, at: [0, {high}]}}}}
+forces:
+  floor: {{type: surface_contact, surface: {{body: ground}},
+          ball: {{body: ball, at: [0, {high}], radius: 0.05}}}}
+contact_laws:
+  law: {{normal: impact, exponent: {told["e"]}, stiffness: {told["k"]}, damping: {told["cmax"]},
+        ramp: {told["d"]}, friction: {{law: none}}}}
+gravity: [0, -{told["g"]}, 0]
+solver: {{end: 0.3, tolerance: 1e-9}}
+""")
+    depth, _ = r.largest("floor.penetration")
+    assert depth == pytest.approx(told["max_penetration"], rel=1e-6)
+    (left,) = r.events[r.events[:, EVENT_KIND] == SEPARATION]
+    # its v_out is that of a step after the separation, lower by 2e-6 than what its apex needs
+    assert -left[3] == pytest.approx(sqrt(2.0 * told["g"] * told["apex"]), rel=1e-7)

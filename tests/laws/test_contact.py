@@ -4,6 +4,7 @@ import csv
 import json
 from math import exp, inf, log1p
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -23,6 +24,7 @@ from trsim.laws.contact import (
     hertz_contact_time,
     hertz_peak,
     hertz_stiffness,
+    impact_force,
     normal_force,
     ramped_beyond,
     ramped_branch_of,
@@ -33,6 +35,7 @@ from trsim.laws.contact import (
 )
 
 DATA = Path(__file__).parents[1] / "data"
+COMMERCIAL = json.loads((DATA / "impact_and_bistop.json").read_text())["vectors"]
 HERTZ_BALL = json.loads((DATA / "contact_analytic.json").read_text())["hertz"]
 LAWS = ("lankarani_nikravesh", "hunt_crossley", "flores", "identified")
 C = 3e-4  # m, radial clearance
@@ -242,3 +245,27 @@ def test_neighbours_of_branches_of_ramped_damping(v, ratio):
         before, after = branches[i], branches[i + 1]
         assert ramped_neighbour(before, x[i + 1] * ramp, *rest) == after
         assert ramped_neighbour(after, x[i] * ramp, *rest) == before
+
+
+class Fading(NamedTuple):
+    """A pair of IMPACT: K d^n, and a damper that a STEP fades in."""
+
+    stiffness: float
+    exponent: float
+    damping: float
+    ramp: float
+    clearance: float = C
+    form: int = HERTZ
+
+
+@pytest.mark.parametrize("name, args, wanted", COMMERCIAL)
+def test_impact_and_bistop_of_commercial_programs(name, args, wanted):
+    """Their x is a coordinate, and x1, x2 where it meets the stops; here d is how far beyond one it
+    is.  A BISTOP is two of them.  How far that is, x1 - x, is what rounding spoils most."""
+    x, rate, low, *rest = args
+    high, *law = rest if name == "BISTOP" else (inf, *rest)
+    pair = Fading(*(law[0], law[1], law[2], law[3]))
+    force = impact_force(low - x, -rate, pair) - impact_force(x - high, rate, pair)
+    depth = max(low - x, x - high, 1e-9)
+    rounding = 4.0 * np.finfo(float).eps * max(abs(x), abs(low)) / depth
+    assert force == pytest.approx(wanted, rel=4.0 * rounding, abs=1e-12)
