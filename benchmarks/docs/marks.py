@@ -9,6 +9,7 @@ that of the sources of the entry when it was made; where they have another one, 
 is stale.  COMMIT is the one it was measured at, where that is known.  None of this is rendered.
 """
 
+import ast
 import hashlib
 import io
 import re
@@ -16,6 +17,7 @@ import subprocess
 import tarfile
 import tempfile
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -28,6 +30,7 @@ MARK = re.compile(
     r"; from: (?P<digest>\w+)(; at: (?P<commit>\w+))? -->$"
 )
 END = "<!-- end -->"
+DOCUMENTED = ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef
 READ = (".py", ".yaml", ".csv", ".toml")  # what of a folder is a source
 TABLE = re.compile(r"(?:^ *\|.*\n?)+", re.MULTILINE)
 
@@ -98,14 +101,35 @@ def files(root: Path, of: tuple[str, ...]) -> Iterator[Path]:
 
 
 def digest(of: tuple[str, ...], root: Path = ROOT) -> str:
-    """Of the sources, without empty lines, lines of comment and markers."""
+    """Of the sources, without what only people read: docstrings, lines of comment, empty lines and
+    markers."""
     found = hashlib.sha256()
     for path in files(root, of):
-        found.update(f"\n{path.relative_to(root).as_posix()}\n".encode())
-        for line in path.read_text(encoding="utf-8").splitlines():
-            if line.strip() and not line.lstrip().startswith("#") and not MARK.match(line):
-                found.update(f"{line.rstrip()}\n".encode())
+        text = path.read_text(encoding="utf-8")
+        told = statements(text) if path.suffix == ".py" else lines_of(text)
+        found.update(f"\n{path.relative_to(root).as_posix()}\n{told}".encode())
     return found.hexdigest()[:12]
+
+
+@cache
+def statements(text: str) -> str:
+    """The lines of a Python source without docstrings."""
+    lines = text.splitlines()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, DOCUMENTED) and ast.get_docstring(node, clean=False) is not None:
+            said = node.body[0]
+            count = (said.end_lineno or said.lineno) - said.lineno + 1
+            lines[said.lineno - 1 : said.lineno - 1 + count] = [""] * count
+    return lines_of("\n".join(lines))
+
+
+def lines_of(text: str) -> str:
+    """The lines that are not empty, comments or markers."""
+    kept = (
+        line.rstrip() for line in text.splitlines()
+        if line.strip() and not line.lstrip().startswith("#") and not MARK.match(line)
+    )  # fmt: skip
+    return "\n".join(kept)
 
 
 def digest_at(of: tuple[str, ...], commit: str) -> str:

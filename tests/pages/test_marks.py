@@ -120,3 +120,16 @@ def test_what_is_not_marked_is_found(page):
 def test_markers_that_do_not_fit(page, change, fault):
     with pytest.raises(ValueError, match=fault):
         marks.marked(page, change(page.read_text(encoding="utf-8")))
+
+
+def test_what_only_people_read_makes_nothing_stale(tmp_path):
+    source = tmp_path / "a.py"
+    text = (
+        '"""A page."""\n\n# why\ndef f(x):\n    """Twice x.\n\n    x m\n    """\n    return 2 * x'
+    )
+    source.write_text(text)
+    before = marks.digest(("a.py",), tmp_path)
+    source.write_text(text.replace("Twice", "Two times").replace("# why", "# why not\n"))
+    assert marks.digest(("a.py",), tmp_path) == before
+    source.write_text(text.replace("2 * x", '"""Twice x."""'))
+    assert marks.digest(("a.py",), tmp_path) != before
