@@ -172,20 +172,24 @@ def test_a_roller_in_a_groove():
     assert r["groove.touching"][-1] == 1.0
 
 
-TOUCHED = {  # scenarios with a contact that presses, and how long is enough
+TOUCHED = {  # scenarios with a contact that presses, and how long is enough, s
     "ball_on_an_incline": 0.1, "ball_slides_and_rolls": 0.2, "bouncing_ball": 3.2,
-    "brick_on_its_edge": 0.5, "cam_jump": 0.7, "pin_in_a_slot": 8.0, "roller_over_a_box": 4.0,
-    "roller_in_a_groove": 0.27, "three_balls": 1e-3, "wedge": 0.5, "block_on_a_belt": 0.7,
+    "brick_on_its_edge": 0.5, "cam_jump": 0.7, "cam_flat_contact": 0.01, "pin_in_a_slot": 8.0,
+    "roller_over_a_box": 4.0, "roller_in_a_groove": 0.27, "three_balls": 1e-3, "wedge": 0.5,
+    "block_on_a_belt": 0.7, "slider_crank_friction": 3e-3, "slider_crank_frictionless": 3e-3,
+    "slider_crank_periodic": 3e-3,
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", TOUCHED)
 def test_a_hundredth_of_the_tolerance_changes_no_peak(name):
-    """Less than a ten-thousandth of it: none of these motions is chaotic."""
+    """Less than a ten-thousandth of it, of every contact: none of these motions is chaotic so
+    early.  The cranks with clearance are after a turn, 12 ms.  Those that are struck in no time
+    (three_balls_struck, pendulum_at_a_stop) have impulses and no peak."""
     tolerance = load(VALIDATION / f"{name}.yaml").solver.tolerance
     short = (f"solver.end={TOUCHED[name]} s", f"output.every={0.02 * TOUCHED[name]} s")
     runs = [go(name, *short, f"solver.tolerance={part * tolerance}") for part in (1.0, 0.01)]
     forces = [c for c in runs[0].place if c.endswith((".normal_force", ".contact_force"))]
     coarse, fine = (np.array([r.largest(c)[0] for c in forces]) for r in runs)
     assert np.max(coarse) > 1e-3  # N: something touches
-    assert coarse == pytest.approx(fine, rel=1e-4, abs=1e-4 * np.max(fine))
+    assert coarse == pytest.approx(fine, rel=1e-4, abs=1e-9 * np.max(fine))
