@@ -7,6 +7,19 @@ REVERSER = Path(__file__).parents[1] / "scenarios" / "thrust_reverser"
 
 INERTIA = "inertia: [0.01, 0.02, 0.03]"
 
+# a crank of 0.1 that stands upright, and a rod of sqrt(0.1)
+UPRIGHT_CRANK = """
+bodies:
+  crank: {mass: 1 kg, inertia: 0.01, at: [0, 0.05]}
+  rod: {mass: 1 kg, inertia: 0.01, at: [0.15, 0.05]}
+  slider: {mass: 1 kg, inertia: 0.01, at: [0.3, 0]}
+joints:
+  a: {type: revolute, bodies: [ground, crank], at: [0, 0]}
+  b: {type: revolute, bodies: [crank, rod], at: [0, 0.1]}
+  c: {type: revolute, bodies: [rod, slider], at: [0.3, 0]}
+  guide: {type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}
+"""
+
 
 def text(bodies, joints, planar="false", more="", end=0.1):
     """A scenario of bodies {name: keys} and joints {name: keys}."""

@@ -41,6 +41,7 @@ def lines(root: Path = ROOT) -> dict[str, list[Mutation]]:
     return found
 
 
+@cache
 def digest(root: Path = ROOT) -> str:
     """Of everything a verdict depends on: sources, tests and what they read."""
     told = hashlib.sha256()

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.linkages import UPRIGHT_CRANK
 from tests.runs import run
 from trsim.scenario.load import load
 
@@ -41,20 +42,14 @@ drives: {motor: {joint: a, position: "2*pi*t"}}
 sensors: {swing: {joint: d}}
 gravity: [0, -9.81, 0]
 """
-SLIDER_CRANK = """
-bodies:
-  crank: {mass: 1 kg, inertia: 0.01, at: [0, 0.05]}
-  rod: {mass: 1 kg, inertia: 0.01, at: [0.15, 0.05]}
-  slider: {mass: 1 kg, inertia: 0.01, at: [0.3, 0]}
-joints:
-  a: {type: revolute, bodies: [ground, crank], at: [0, 0]}
-  b: {type: revolute, bodies: [crank, rod], at: [0, 0.1]}
-  c: {type: revolute, bodies: [rod, slider], at: [0.3, 0]}
-  guide: {type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}
+SLIDER_CRANK = (
+    UPRIGHT_CRANK
+    + """
 drives: {motor: {joint: a, position: "2*pi*t"}}
 sensors: {turn: {joint: a}}
 gravity: [0, -9.81, 0]
 """
+)
 ARM = """
 bodies:
   one: {mass: 3 kg, inertia: 0.05, at: [0.2, 0]}

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from tests.linkages import UPRIGHT_CRANK
 from tests.runs import run
 from trsim.errors import ScenarioError, SolverError
 from trsim.scenario.load import loads
@@ -63,16 +64,9 @@ def test_friction_that_the_load_makes():
     assert found.load == pytest.approx([by_hand(a) for a in found.x], rel=1e-8)
 
 
-CRANK = """
-bodies:
-  crank: {mass: 1 kg, inertia: 0.01, at: [0, 0.05]}
-  rod: {mass: 1 kg, inertia: 0.01, at: [0.15, 0.05]}
-  slider: {mass: 1 kg, inertia: 0.01, at: [0.3, 0]}
-joints:
-  a: {type: revolute, bodies: [ground, crank], at: [0, 0]}
-  b: {type: revolute, bodies: [crank, rod], at: [0, 0.1]}
-  c: {type: revolute, bodies: [rod, slider], at: [0.3, 0]}
-  guide: {type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}
+CRANK = (
+    UPRIGHT_CRANK
+    + """
 drives:
   motor: {joint: a, position: "-20*t"}
 sensors: {turn: {joint: a}}
@@ -82,6 +76,7 @@ sizing: {drive: motor, load: forces.hand.force, of: turn}
 solver: {method: METHOD, end: 50 ms}
 output: {every: 1 ms}
 """
+)
 
 
 @pytest.mark.parametrize("method", ["kinematic", "dop853"])

@@ -5,6 +5,7 @@ import pytest
 from scipy.interpolate import Akima1DInterpolator
 from scipy.optimize import brentq
 
+from tests.linkages import UPRIGHT_CRANK
 from tests.runs import energy_error, run
 from trsim.errors import ModelError, ScenarioError
 from trsim.solve.path.place import Place
@@ -289,21 +290,8 @@ forces:
 
 
 def test_where_joints_do_not_reach():
-    text = """
-planar: true
-bodies:
-  crank: {mass: 1 kg, inertia: 0.01, at: [0, 0.05]}
-  rod: {mass: 1 kg, inertia: 0.01, at: [0.15, 0.05]}
-  slider: {mass: 1 kg, inertia: 0.01, at: [0.3, 0]}
-joints:
-  a: {type: revolute, bodies: [ground, crank], at: [0, 0]}
-  b: {type: revolute, bodies: [crank, rod], at: [0, 0.1]}
-  c: {type: revolute, bodies: [rod, slider], at: [0.3, 0]}
-  guide: {type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}
-drives:
-  pull: {joint: guide, position: "0.5*t"}
-"""
-    r = path(text)
+    pulled = 'planar: true\ndrives: {pull: {joint: guide, position: "0.5*t"}}\n'
+    r = path(UPRIGHT_CRANK + pulled)
     reach = 0.1 + np.hypot(0.3, 0.1) - 0.3
     assert r.outcome.status == "limit" and "dead end" in r.outcome.reason
     assert r.outcome.time == pytest.approx(reach / 0.5, abs=1e-9)

@@ -1,6 +1,7 @@
 """Sweeps that keep the numbers of their cases: those that result files give, to the bit."""
 
 import math
+import shutil
 from pathlib import Path
 
 import pytest
@@ -130,12 +131,13 @@ def test_what_was_not_kept_is_told(folder):
         Sweep(folder)[0]
 
 
-def test_again_runs_nothing_and_other_wishes_do(scenario, folder, tmp_path):
-    copy = tmp_path / "sweep"
-    copy.mkdir()
-    for path in folder.iterdir():
-        if path.is_file():
-            (copy / path.name).write_bytes(path.read_bytes())
+@pytest.fixture
+def copy(folder, tmp_path):
+    """A copy of the sweep."""
+    return shutil.copytree(folder, tmp_path / "sweep")
+
+
+def test_again_runs_nothing_and_other_wishes_do(scenario, copy, tmp_path):
     assert made(scenario, copy) == []
     other = tmp_path / "crank.yaml"
     other.write_text(scenario.read_text().replace(ASKED[1], "final:stroke"))
@@ -145,12 +147,7 @@ def test_again_runs_nothing_and_other_wishes_do(scenario, folder, tmp_path):
     assert made(other, copy) == []  # files have all that is asked for
 
 
-def test_a_record_that_was_lost_is_made_again(scenario, folder, tmp_path):
-    copy = tmp_path / "sweep"
-    copy.mkdir()
-    for path in folder.iterdir():
-        if path.is_file():
-            (copy / path.name).write_bytes(path.read_bytes())
+def test_a_record_that_was_lost_is_made_again(scenario, folder, copy):
     records = copy / "summaries.jsonl.gz"
     whole = records.read_bytes()
     records.write_bytes(whole[:-1])  # its writer died
@@ -173,8 +170,41 @@ def test_a_case_can_be_run_again_with_all_it_gives(scenario, tmp_path):
     found = study(folder)
     assert [case.filed for case in found.cases] == [False, True]
     assert found.cases[1].run().channel("stroke").size == found.cases[1].run().rows
+    row = (folder / "index.csv").read_text().splitlines()[2]
     assert made(scenario, folder) == []
     assert [case.filed for case in study(folder).cases] == [False, True]
+    asked = repr(scalar(found.cases[1].run(), ASKED[0])[0])
+    assert asked in row and asked in (folder / "index.csv").read_text().splitlines()[2]
+
+
+CASES = f"""
+sweep: {{keep: summary, numbers: ["{ASKED[0]}"], {B}: [0.2 mm, 0.5 mm]}}
+cases:
+  slow: {{drives: {{motor: {{velocity: 4000 rpm}}}}}}
+  fast: {{drives: {{motor: {{velocity: 6000 rpm}}}}}}
+"""
+
+
+def test_named_cases_are_kept_alike(tmp_path):
+    path = tmp_path / "crank.yaml"
+    path.write_text(small.SLIDER_CRANK + CASES)
+    for sets in ((), (f"{B}=0.3 mm",)):  # nothing varies any more: the cases are left
+        found = plan(str(path), sets, "one")
+        assert (found.keep, found.numbers) == ("summary", ASKED[:1])
+    path.write_text(path.read_text() + f"  other: {{sweep: {{{B}: [0.4 mm]}}}}\n")
+    with pytest.raises(UsageError, match="differ in what is kept of them"):
+        plan(str(path), (), "one")
+
+
+def test_a_file_of_others_is_left_alone(scenario, tmp_path):
+    other = tmp_path / "sweep" / "summaries.jsonl.gz"
+    other.parent.mkdir()
+    (tmp_path / "sweep" / "ledger.jsonl").touch()
+    made(scenario, tmp_path / "sweep")
+    other.write_text("something else")
+    with pytest.raises(FileError, match="is not a file of a sweep's summaries"):
+        made(scenario, tmp_path / "sweep")
+    assert other.read_text() == "something else"
 
 
 @pytest.mark.parametrize(

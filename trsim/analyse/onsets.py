@@ -18,10 +18,17 @@ def changes(file: h5py.File, contact: str) -> tuple[Array, NDArray[np.bool_]]:
 
     Of a contact that is closed throughout, the beginning.
     """
-    times, kind = happened(file, contact)
+    touched = len(file["steps"][contact]["time"]) > 0
+    return changed(*happened(file, contact), file["time"][:touched])
+
+
+def changed(
+    times: Array, kind: NDArray[np.str_], throughout: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """The same of its events; throughout: the beginning of a contact that is closed without any."""
     mine = np.isin(kind, ("onset", "separation"))
-    if not mine.any() and len(file["steps"][contact]["time"]):
-        return file["time"][:1], np.array([True])
+    if not mine.any() and len(throughout):
+        return throughout, np.array([True])
     return times[mine], kind[mine] == "onset"
 
 

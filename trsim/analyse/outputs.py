@@ -46,33 +46,32 @@ def scalar(run: Run, word: str) -> Number:
     """
     if (kept := run.kept(word)) is not None:
         return kept
+    check_word(word, run)
     name, text = parted(word)
     kind, _, of = name.partition(":")
-    if kind not in KINDS:
-        raise _no_kind(run, word, name, kind)
-    check_word(word)
     within = window(run, text, rows=kind not in LOCATED)
     value, unit = KINDS[kind](run, of, within, bool(text))
     return float(value), unit
 
 
-def check_word(word: str) -> None:
-    """Check that a word has the form of a number.  Raises UsageError."""
+def check_word(word: str, run: Run | None = None) -> None:
+    """Check that a word has the form of a number; run: whose channels may be meant.
+
+    Raises UsageError.
+    """
     name, text = parted(word)
     kind, colon, of = name.partition(":")
     if kind not in KINDS:
-        meant = MEANT.get(kind)
-        hint = f"Write {meant}:{of}." if meant and of else f"{FORM}  {known(kind, KINDS)}"
-        raise UsageError(f"no number of a run: {described(word)}", hint)
+        raise _no_kind(word, name, kind, run)
     if not colon or not of:
         raise UsageError(f"{described(word)} does not say of what", FORM)
     if kind in WHOLE and text:
         raise UsageError(f"{described(word)}: {kind} is of the whole run", "Leave out the window.")
 
 
-def _no_kind(run: Run, word: str, name: str, kind: str) -> UsageError:
+def _no_kind(word: str, name: str, kind: str, run: Run | None) -> UsageError:
     """What is wrong with a word that does not begin with the kind of a number."""
-    if run.stores(name):
+    if run is not None and run.stores(name):
         what = f"{described(name)} does not say which number of the channel"
         return UsageError(what, f"Write peak:{name}, mean:{name} or final:{name}.")
     if kind in MEANT and ":" in word:
@@ -80,7 +79,9 @@ def _no_kind(run: Run, word: str, name: str, kind: str) -> UsageError:
             f"no number of a run: {described(word)}",
             f"Write {MEANT[kind]}:{word[len(kind) + 1 :]}.",
         )
-    hint = known(kind, KINDS) if ":" in word else f"{FORM}  {known(name, run.names)}"
+    hint = known(kind, KINDS) if ":" in word else FORM
+    if run is not None and ":" not in word:
+        hint = f"{FORM}  {known(name, run.names)}"
     return UsageError(f"no number of a run: {described(word)}", hint)
 
 

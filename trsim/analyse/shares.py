@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.analyse.onsets import changed
 from trsim.analyse.window import Window
 from trsim.arrays import Array
 from trsim.store.read import Run
@@ -47,10 +48,7 @@ def shares(run: Run, joint: str, within: Window) -> Shares:
     mine = events.element == joint
     times, kind = events.time[mine], events.kind[mine]
     struck = times[kind == "onset"]
-    changed = np.isin(kind, ("onset", "separation"))
-    times, closes = times[changed], kind[changed] == "onset"
-    if not changed.any() and len(steps["time"]):  # closed throughout
-        times, closes = run.time[:1], np.array([True])
+    times, closes = changed(times, kind, run.time[: len(steps["time"]) > 0])
     begins, ends = intervals(times, closes, within)
     once = single(steps["time"], steps["penetration"], begins, ends)
     length = within.end - within.begin

@@ -24,7 +24,8 @@ from trsim.units import unit as dimension
 
 METHODS = ("grid", "zip", "latin_hypercube", "monte_carlo", "sobol")
 SAMPLED = METHODS[2:]
-SETTINGS = ("method", "samples", "seed", "keep", "numbers")
+KEPT = ("keep", "numbers")  # what of cases is kept
+SETTINGS = ("method", "samples", "seed", *KEPT)
 SUMMARY, ALL = "summary", "all"
 KEEP = (ALL, SUMMARY)
 SPACED = ("lin", "log")

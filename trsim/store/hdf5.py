@@ -112,6 +112,7 @@ class Running:
         self.file: h5py.File | None = None
         self.magnitudes = peaks.Magnitudes(mechanism.columns)
         self.impacts = describe.Impacts(len(mechanism.instances))
+        self.touches = tables.Touches(mechanism)
         self.extremes = {"magnitudes": self.magnitudes.largest, "impacts": self.impacts.of}
         self.around, self.saved, self.took = around, time.monotonic(), 0.0  # s of wall time
         self.state: dict[str, Any] | None = None  # of the solver after the last block taken
@@ -212,11 +213,8 @@ class Running:
         describe.flag(file, self.mechanism)
         self.contacts = {
             e: tables.steps(file, instance, time_field)
-            for e, instance in enumerate(self.mechanism.instances)
-            if instance.row.contact is not None
+            for e, instance in tables.touching(self.mechanism).items()
         }
-        every = self.mechanism.instances
-        self.force = {e: tables.force_column(every[e]) for e in self.contacts}
         self.events = tables.events(file, self.mechanism, time_field)
         self.recorded = tables.recorded(file, self.mechanism, [time_field, *fields])
         self.jumps = tables.jumps(file, self.mechanism, time_field)
@@ -230,12 +228,7 @@ class Running:
         self.rows.append(block.rows)
         if len(block.rows):
             self.magnitudes.update(block.rows)
-        if len(block.steps):
-            of = block.steps[:, 1]
-            for e, table in self.contacts.items():
-                lines = block.steps[of == e][:, : table.waiting.shape[1]]
-                table.append(lines)
-                self.impacts.press(e, lines, self.force[e])
+        self.touches.take(block.steps, self.contacts, self.impacts)
         self.events.append(block.events)
         for k, of_section in enumerate(self.sections):
             of_section.append(block.points[block.points[:, points.SECTION] == k])

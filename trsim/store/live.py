@@ -12,20 +12,18 @@ from typing import Any
 import numpy as np
 
 from trsim.arrays import Array
-from trsim.errors import TrsimError, UsageError, known
+from trsim.errors import TrsimError, UsageError
 from trsim.solve.blocks import Blocks
 from trsim.store import describe, peaks, points, tables
 from trsim.store.grow import Field
-from trsim.store.points import Points, between_bars, split
+from trsim.store.points import Points
 from trsim.store.read import Events, Run
-
-NONE: Array = np.zeros((0, 0))
 
 
 class Gathered:
     """Blocks, as they come."""
 
-    def __init__(self, width: int = 0) -> None:
+    def __init__(self, width: int) -> None:
         self.parts: list[Array] = []
         self.width = width
 
@@ -45,38 +43,35 @@ class Gathered:
         return np.asfortranarray(np.concatenate(self.parts))
 
 
-@dataclass(frozen=True)
+def columns_of(lines: Array, start: int, size: int) -> Array:
+    """One column, or several side by side."""
+    return lines[:, start] if size == 1 else lines[:, start : start + size]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Live(Run):
     """A run in memory, complete."""
 
-    columns: Any = None  # channel -> Array
-    of_steps: Any = None  # contact -> {channel: Array}
-    of_events: Any = None  # Events
-    of_sections: Any = None  # name -> Points
-    of_peaks: tuple[peaks.Peak, ...] = ()
-    told: Any = None  # summary
-    solver: Any = None  # attributes of the solver
-    of_units: Any = None  # contact -> {channel: unit}
-    resolved: Any = None  # the scenario
+    columns: dict[str, Array]  # of time and the channels
+    of_steps: dict[str, dict[str, Array]]  # contact -> channel -> values
+    of_events: Events
+    of_sections: dict[str, Points]
+    of_peaks: tuple[peaks.Peak, ...]
+    told: dict[str, Any]  # the summary
+    solver: dict[str, Any]  # attributes of the solver
+    of_units: dict[str, dict[str, str]]  # contact -> channel -> unit
+    resolved: dict[str, Any]  # the scenario
 
     @property
     def reached(self) -> float:
         return float(self.told["time"])
 
-    def channel(self, name: str) -> Array:
-        if (inside := between_bars(name)) is not None:
-            return self._magnitude(inside)
-        stored, component = split(name, self.sizes)
-        if stored not in self.columns:
-            raise UsageError(f"{self.path}: no channel named '{name}'", known(name, self.names))
-        found: Array = self.columns[stored]
-        return found if component is None else found[:, component]
+    def _rows(self, stored: str) -> Array:
+        return self.columns[stored]
 
     def steps(self, joint: str) -> dict[str, Array]:
-        if joint not in self.contacts:
-            raise UsageError(f"{self.path}: no contact '{joint}'", known(joint, self.contacts))
-        found: dict[str, Array] = self.of_steps[joint]
-        return found
+        self.check_contact(joint)
+        return self.of_steps[joint]
 
     def contact_unit(self, joint: str, *channels: str) -> str:
         units = self.of_units[joint]
@@ -84,8 +79,7 @@ class Live(Run):
 
     @property
     def events(self) -> Events:
-        found: Events = self.of_events
-        return found
+        return self.of_events
 
     @property
     def peaks(self) -> tuple[peaks.Peak, ...]:
@@ -93,24 +87,20 @@ class Live(Run):
 
     @property
     def poincare(self) -> dict[str, Points]:
-        found: dict[str, Points] = self.of_sections
-        return found
+        return self.of_sections
 
     @property
     def summary(self) -> dict[str, Any]:
-        found: dict[str, Any] = self.told
-        return found
+        return self.told
 
     @property
     def scenario(self) -> dict[str, Any]:
-        found: dict[str, Any] = self.resolved
-        return found
+        return self.resolved
 
     def group(self, name: str) -> dict[str, Any]:
         if name != "solver":
             raise UsageError(f"{self.path}: nothing is kept of its {name}")
-        found: dict[str, Any] = self.solver
-        return found
+        return self.solver
 
 
 class Taking:
@@ -120,11 +110,8 @@ class Taking:
         self.path, self.scenario, self.mechanism = path, scenario, mechanism
         self.planned = points.plan(scenario, mechanism)
         self.rows = Gathered(1 + max((c.start + c.size for c in mechanism.columns), default=0))
-        self.contacts = {
-            e: Gathered(tables.width_of_steps(instance))
-            for e, instance in enumerate(mechanism.instances)
-            if instance.row.contact is not None
-        }
+        self.touches = tables.Touches(mechanism)
+        self.contacts = {e: Gathered(width) for e, width in self.touches.width.items()}
         self.events, self.points = Gathered(tables.EVENT_COLUMNS), Gathered(4)
         self.magnitudes = peaks.Magnitudes(mechanism.columns)
         self.impacts = describe.Impacts(len(mechanism.instances))
@@ -148,12 +135,7 @@ class Taking:
         self.rows.append(block.rows)
         if len(block.rows):
             self.magnitudes.update(block.rows)
-        if len(block.steps):
-            of = block.steps[:, 1]
-            for e, gathered in self.contacts.items():
-                lines = block.steps[of == e][:, : gathered.width]
-                gathered.append(lines)
-                self.impacts.press(e, lines, tables.force_column(self.mechanism.instances[e]))
+        self.touches.take(block.steps, self.contacts, self.impacts)
         self.events.append(block.events)
         self.impacts.update(block.events)
         self.points.append(block.points)
@@ -163,11 +145,8 @@ class Taking:
         """The run, and its summary."""
         mechanism, rows = self.mechanism, self.rows.whole()
         wanted = [c for c in mechanism.columns if c.wanted or c.name in self.planned.columns]
-        columns = {"time": rows[:, 0]} | {
-            c.name: rows[:, 1 + c.start] if c.size == 1
-            else rows[:, 1 + c.start : 1 + c.start + c.size]
-            for c in wanted
-        }  # fmt: skip
+        columns = {"time": rows[:, 0]}
+        columns |= {c.name: columns_of(rows, 1 + c.start, c.size) for c in wanted}
         extremes = None if outcome is None else outcome.peaks
         found = peaks.table(mechanism, extremes, self.magnitudes)
         if "stroke" in columns:
@@ -197,12 +176,8 @@ class Taking:
     def steps(self, e: int, instance: Any) -> dict[str, Array]:
         """`time` and the channels of a contact at its accepted steps in touch."""
         lines, fields = self.contacts[e].whole(), tables.step_fields(instance)
-        found = {"time": lines[:, 0]}
-        for f in fields:
-            found[f.name] = (
-                lines[:, f.start] if f.size == 1 else lines[:, f.start : f.start + f.size]
-            )
-        return found
+        found = {f.name: columns_of(lines, f.start, f.size) for f in fields}
+        return {"time": lines[:, 0], **found}
 
     def happened(self) -> Events:
         """The table of events, as a file has it."""

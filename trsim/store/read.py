@@ -86,9 +86,13 @@ class Run:
         stored, component = split(name, self.sizes)
         if not self.stores(name):
             raise UsageError(f"{self.path}: no channel named '{name}'", known(name, self.names))
-        with opened(self.path) as file:
-            found = torn.rows(file[stored], 0, self.rows)
+        found = self._rows(stored)
         return found if component is None else found[:, component]
+
+    def _rows(self, stored: str) -> Array:
+        """The rows of a channel that is stored."""
+        with opened(self.path) as file:
+            return torn.rows(file[stored], 0, self.rows)
 
     def _magnitude(self, name: str) -> Array:
         """The rows of the length of a vector; of a number those of its size without the sign."""
@@ -120,10 +124,14 @@ class Run:
 
     def steps(self, joint: str) -> dict[str, Array]:
         """`time` and the channels of a contact at every accepted step in touch."""
-        if joint not in self.contacts:
-            raise UsageError(f"{self.path}: no contact '{joint}'", known(joint, self.contacts))
+        self.check_contact(joint)
         with opened(self.path) as file:
             return table(file["steps"][joint])
+
+    def check_contact(self, joint: str) -> None:
+        """Check that there is such a contact.  Raises UsageError."""
+        if joint not in self.contacts:
+            raise UsageError(f"{self.path}: no contact '{joint}'", known(joint, self.contacts))
 
     def contact_unit(self, joint: str, *channels: str) -> str:
         """The unit of the first of the channels that a contact has, force or speed."""
@@ -182,8 +190,7 @@ class Run:
 
     def impacts(self, joint: str) -> Impacts:
         """The touches of a joint with clearance, or of a stop, whose angle is nan."""
-        if joint not in self.contacts:
-            raise UsageError(f"{self.path}: no contact '{joint}'", known(joint, self.contacts))
+        self.check_contact(joint)
         events = self.events
         onset = (events.kind == "onset") & (events.element == joint)
         return Impacts(events.time[onset], events.angle[onset], events.speed[onset])

@@ -27,8 +27,9 @@ AXES = ("normal", "friction_1", "friction_2")  # of an impact, in the order of i
 def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
     """The table of one contact: its channels at every accepted step in touch."""
     fields = step_fields(instance)
+    width = 2 + sum(field.size for field in fields)
     group = file["steps"].create_group(instance.name)
-    return Growing(group, [time_field, *fields], width_of_steps(instance), EXPECTED)
+    return Growing(group, [time_field, *fields], width, EXPECTED)
 
 
 def step_fields(instance: Any) -> list[Field]:
@@ -40,15 +41,32 @@ def step_fields(instance: Any) -> list[Field]:
     return fields
 
 
-def width_of_steps(instance: Any) -> int:
-    """The columns of a line of steps of a contact."""
-    return 2 + sum(int(c.size) for c in instance.channels)
+def touching(mechanism: Any) -> dict[int, Any]:
+    """The instances that are contacts, by their rows."""
+    every = enumerate(mechanism.instances)
+    return {e: instance for e, instance in every if instance.row.contact is not None}
 
 
-def force_column(instance: Any) -> int:
-    """The column of a line of steps that holds the contact force."""
-    start = {field.name: field.start for field in step_fields(instance)}
-    return start.get("contact_force", start.get("normal_force", 1))
+class Touches:
+    """Shares the lines of steps out among the contacts of a mechanism."""
+
+    def __init__(self, mechanism: Any) -> None:
+        self.width, self.force = dict[int, int](), dict[int, int]()
+        for e, instance in touching(mechanism).items():
+            fields = step_fields(instance)
+            start = {field.name: field.start for field in fields}
+            self.width[e] = 2 + sum(field.size for field in fields)
+            # the column of a line that holds the contact force
+            self.force[e] = start.get("contact_force", start.get("normal_force", 1))
+
+    def take(self, steps: Any, into: Any, impacts: Any) -> None:
+        """Append lines to what takes those of each contact, by its row, and note their forces."""
+        if len(steps):
+            of = steps[:, 1]
+            for e, width in self.width.items():
+                lines = steps[of == e][:, :width]
+                into[e].append(lines)
+                impacts.press(e, lines, self.force[e])
 
 
 def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:

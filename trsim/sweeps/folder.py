@@ -25,7 +25,7 @@ INDEX = headed(*TITLES)
 PLAN = Kind("plan of a sweep", lambda start: start.startswith(FIRST))
 NEEDED = {"version", "source", "engine", "keys", "units", "method", "samples", "seed", "cases"}
 KINDS = {"source": str, "engine": str, "keys": list, "units": dict, "written": dict, "method": str,
-         "samples": int, "seed": int, "cases": list}  # fmt: skip
+         "samples": int, "seed": int, "cases": list, "numbers": list, "sets": list}  # fmt: skip
 AGAIN = "The same `trsim sweep` writes it again."
 LAST = ("attempts", "wall_time", "content_sha256")
 
@@ -86,7 +86,7 @@ def write_plan(folder: Path, plan: Plan, engine: str) -> None:
         "format": FORMAT, "version": VERSION, "source": plan.source, "engine": engine,
         "keys": plan.keys, "units": plan.units, "written": plan.written, "method": plan.method,
         "samples": plan.samples, "seed": plan.seed, "cases": cases,
-        "keep": plan.keep, "numbers": list(plan.numbers), "sets": list(plan.sets),
+        "numbers": list(plan.numbers), "sets": list(plan.sets),
     }  # fmt: skip
     with fresh(folder / "plan.json", PLAN) as unfinished:
         text = json.dumps(told, ensure_ascii=False)
@@ -130,8 +130,9 @@ def _wrong(told: dict[str, Any]) -> str:
         if not isinstance(told.get(name, kind()), kind):
             return f"{name} is no {kind.__name__}"
     texts = [*told["keys"], *told["units"].values(), *told.get("written", {}).values()]
+    texts += [*told.get("numbers", ()), *told.get("sets", ())]
     if not all(isinstance(text, str) for text in texts):
-        return "keys or units are no texts"
+        return "keys, units, numbers or sets are no texts"
     names = []
     for one in told["cases"]:
         if not isinstance(one, dict) or not isinstance(one.get("values"), dict):

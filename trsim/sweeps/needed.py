@@ -51,27 +51,30 @@ def need(case: Case, entry: Entry | None, plan: Plan, where: Where) -> Need:
         return Need(f"tried again: {entry.status}", entry)
     if entry.status == REFUSED:
         return Need("", entry)
-    if entry.kept:  # the case may have been run again since, with all that it gives
-        full = adopted(case.name, case.digest, file, engine) if file.exists() else None
-        return Need("", full) if full else Need(unkept(entry, plan, where), entry)
-    if found := stands(entry, file, engine):
-        return Need("", found)
-    return Need(CHANGED if stamp(file)[0] else "its file is gone", entry)
+    if found := stands(entry, file, engine, where.sizes):
+        return Need(unkept(found, plan), found)
+    lost = "its summary is gone" if entry.kept else "its file is gone"
+    return Need(CHANGED if stamp(file)[0] else lost, entry)
 
 
-def unkept(entry: Entry, plan: Plan, where: Where) -> str:
-    """Why the record of a case is not all that is asked for; empty where it is."""
-    at = place(entry.kept)
-    if at is None or not where.sizes.has(at):
-        return "its summary is gone"
+def unkept(entry: Entry, plan: Plan) -> str:
+    """Why the record of a case is not all that is asked for; empty where it is, and of a file."""
+    if (at := place(entry.kept)) is None:
+        return ""
     if plan.keep != SUMMARY:
         return "its result file is asked for"
     return "" if at.words == words_digest(plan.numbers) else "other numbers are asked for"
 
 
-def stands(entry: Entry, file: Path, engine: str) -> Entry | None:
-    """The entry with the stamp of its file; None where the file is gone or not what it tells of."""
+def stands(entry: Entry, file: Path, engine: str, sizes: Sizes) -> Entry | None:
+    """The entry with the stamp of its file; None where the file, or the record, is gone or not what
+    it tells of.  Where a case was run again since, with all that it gives, that of its file."""
     size, changed = stamp(file)
+    if at := place(entry.kept):
+        full = adopted(entry.case, entry.digest, file, engine) if size else None
+        if full:  # which does not say what the sweep asked for
+            return full._replace(summary={**entry.summary, **full.summary})
+        return entry if sizes.has(at) else None
     if not size or (size, changed) == (entry.size, entry.changed):
         return entry if size else None
     # copied, perhaps: what it says of itself decides

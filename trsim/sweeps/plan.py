@@ -60,20 +60,6 @@ class Plan(NamedTuple):
         return self.trees[case.case].scenario(case)
 
 
-def _check_numbers(words: tuple[str, ...], tree: Tree) -> None:
-    """Check that what is to be kept of every case are numbers of a run."""
-    if not words:
-        return
-    from trsim.analyse.outputs import check_word
-
-    for word in words:
-        try:
-            check_word(word)
-        except UsageError as error:
-            path = ("sweep", "numbers")
-            raise ScenarioError(error.what, error.hint, path, tree.place(path)) from None
-
-
 class _Setting(NamedTuple):
     """An axis of the command line, or of the file."""
 
@@ -139,6 +125,11 @@ def plan(
     if "" not in named:
         keys, si = (CASE, *keys), {CASE: "-", **si}
     sweep = max((one.sweep for one in named.values()), key=lambda one: one.samples)
+    if len({(one.sweep.keep, one.sweep.numbers) for one in named.values()}) > 1:
+        what = f"the cases of {path} differ in what is kept of them"
+        raise UsageError(
+            what, "Write the same `keep` and `numbers` in every `sweep`, or use --keep."
+        )
     _check_numbers(sweep.numbers, first.tree)
     return Plan(path, text, tree.files, keys, si, shown, sweep.method, sweep.samples, sweep.seed,
                 tuple(_distinct(found)), sweep.keep, sweep.numbers, sets, named)  # fmt: skip
@@ -194,7 +185,7 @@ def _with_axes(
             raise ScenarioError("a list of values varies the key, which is a list itself", hint,
                                 tuple(keys_of(key)), at)  # fmt: skip
     if not set(block) - set(vary.SETTINGS) and not axes and isinstance(given, dict) and fixed:
-        return _Named(tree, text, vary.Sweep(), {})
+        block = {key: block[key] for key in vary.KEPT if key in block}  # nothing varies any more
     where = {key: (at, key_place) for key, _, at, key_place in axes}
     block |= {key: value for key, value, *_ in axes}
     try:
@@ -221,6 +212,20 @@ def _at(data: Any, key: str) -> Any:
         else:
             data = data.get(word) if isinstance(data, dict) else None
     return data
+
+
+def _check_numbers(words: tuple[str, ...], tree: Tree) -> None:
+    """Check that what is to be kept of every case are numbers of a run."""
+    if not words:
+        return
+    from trsim.analyse.outputs import check_word
+
+    for word in words:
+        try:
+            check_word(word)
+        except UsageError as error:
+            path = ("sweep", "numbers")
+            raise ScenarioError(error.what, error.hint, path, tree.place(path)) from None
 
 
 # --- cases -----------------------------------------------------------------------------------

@@ -1,9 +1,9 @@
 """The records of cases whose rows a sweep does not keep: one growing file for the whole sweep.
 
 summaries.jsonl.gz, or with shards one file each, summaries-1of3.jsonl.gz: a record is a line of
-JSON, compressed by itself and put behind the others, so `zcat` shows all of them.  Where a record
-is, its line in the ledger says:  FILE:BEGIN:LENGTH:WORDS.  A record that was cut short by a dead
-process has no line in the ledger, and stays where it is.
+JSON, compressed by itself and put behind the others, so `zcat` shows them.  Where a record is, its
+line in the ledger says:  FILE:BEGIN:LENGTH:WORDS.  A record that was cut short by a dead process
+has no line in the ledger, and stays where it is: what lies behind it is read all the same.
 """
 
 import hashlib
@@ -16,6 +16,7 @@ from typing import Any, BinaryIO, NamedTuple
 
 from trsim import system
 from trsim.errors import FileError
+from trsim.store.own import exists
 from trsim.store.target import Kind
 from trsim.sweeps.summary import EVERY, received, unpacked
 
@@ -60,6 +61,7 @@ class Records:
     def add(self, text: str) -> str:
         """Put a record, as it was sent, behind the others; its place."""
         if self.file is None:
+            exists(self.path, RECORDS)  # whatever else has this name is left alone
             flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | system.O_NONBLOCK
             self.file = open(system.opened(self.path, flags), "ab")  # noqa: SIM115 - see close
         data, begin = received(text), self.file.seek(0, os.SEEK_END)

@@ -95,15 +95,11 @@ def study(folder: str | Path) -> Study:
         if entry is None and file.is_file():  # its line was lost; the file says what it is
             entry = adopted(one["name"], one["digest"], file, told["engine"])
         status, reason = (entry.status, entry.reason) if entry else (MISSING, "")
-        if entry and (at := place(entry.kept)):
-            if file.is_file() and (
-                full := adopted(one["name"], one["digest"], file, told["engine"])
-            ):
-                entry = full  # made since
-            elif not sizes.has(at):
-                status = MISSING
-        elif entry and entry.content and not stands(entry, file, told["engine"]):
-            status, reason = MISSING, CHANGED if stamp(file)[0] else ""
+        if entry and entry.content:
+            if found := stands(entry, file, told["engine"], sizes):
+                entry, status, reason = found, found.status, found.reason
+            else:
+                status, reason = MISSING, CHANGED if stamp(file)[0] else ""
         cases.append(Case(one["name"], file, status, reason, one["values"], entry))
     same = {name: told[name] for name in ("source", "units", "method", "samples", "seed")}
     keys, written = tuple(told["keys"]), told.get("written", {})

@@ -32,10 +32,10 @@ from trsim.analyse.fluctuation import shows
 from trsim.analyse.outputs import KINDS, SHARES, scalar
 from trsim.analyse.window import Window, window
 from trsim.arrays import Array
-from trsim.errors import TrsimError, UsageError, known
+from trsim.errors import TrsimError, UsageError
 from trsim.store.grow import components
 from trsim.store.peaks import Peak
-from trsim.store.points import Points, between_bars, split
+from trsim.store.points import Points
 from trsim.store.read import Events, Part, Run
 
 EVENTS, POINTS = 1000, 2000  # that are kept of a case, of a section
@@ -134,7 +134,7 @@ def number(run: Run, word: str) -> tuple[float | None, str]:
 def packed(told: dict[str, Any]) -> tuple[bytes, str]:
     """A record as it is stored, and the sha256 of what it says."""
     text = json.dumps(told, ensure_ascii=False, sort_keys=True, separators=(",", ":"))
-    data = text.encode()
+    data = f"{text}\n".encode()
     return gzip.compress(data, LEVEL, mtime=0), hashlib.sha256(data).hexdigest()
 
 
@@ -145,6 +145,7 @@ def sent(told: dict[str, Any]) -> dict[str, str]:
 
 
 def received(text: str) -> bytes:
+    """A record that was sent, as it is stored."""
     return base64.b64decode(text)
 
 
@@ -163,12 +164,12 @@ def unpacked(data: bytes, sha: str) -> dict[str, Any] | None:
 # --- read like a run -------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Kept(Run):
     """What a sweep kept of a case, read like its result file; without rows."""
 
-    told: Any = None
-    case: str = ""
+    told: dict[str, Any]  # the record
+    case: str
 
     @property
     def reached(self) -> float:
@@ -192,10 +193,10 @@ class Kept(Run):
         kind, _, of = word.partition(":")
         if kind in OF_CHANNELS and of in self.told["channels"]:
             value = self.told["channels"][of][OF_CHANNELS.index(kind)]
-            return _number(value), self.unit(self._whole_of(of))
+            return float(value), self.unit(self._whole_of(of))
         if kind in OF_CONTACTS and of in self.told["contacts"]:
             value = self.told["contacts"][of][OF_CONTACTS.index(kind)]
-            return _number(value), "s" if kind == "between" else "-"
+            return float(value), "s" if kind == "between" else "-"
         if kind in OF_ROWS:
             self.channel(of.partition("@")[0])  # tells what there is not
         return None
@@ -204,13 +205,10 @@ class Kept(Run):
         """The channel that a name is, or is a component of."""
         return name if name in self.units else name.rpartition(".")[0]
 
-    def channel(self, name: str) -> Array:
-        if name == "time":
+    def _rows(self, stored: str) -> Array:
+        if stored == "time":
             return self.time
-        inside = between_bars(name) or name
-        if split(inside, self.sizes)[0] not in self.units:
-            raise UsageError(f"{self.path}: no channel named '{name}'", known(name, self.names))
-        raise self._gone(f"the rows of '{name}'")
+        raise self._gone(f"the rows of '{stored}'")
 
     def _gone(self, what: str) -> UsageError:
         return UsageError(
@@ -220,8 +218,7 @@ class Kept(Run):
         )
 
     def steps(self, joint: str) -> dict[str, Array]:
-        if joint not in self.contacts:
-            raise UsageError(f"{self.path}: no contact '{joint}'", known(joint, self.contacts))
+        self.check_contact(joint)
         raise self._gone(f"the steps of '{joint}'")
 
     def contact_unit(self, joint: str, *channels: str) -> str:
@@ -268,10 +265,6 @@ class Kept(Run):
     @property
     def phase(self) -> dict[str, Points]:
         return {}
-
-
-def _number(value: float | None) -> float:
-    return math.nan if value is None else float(value)
 
 
 def _part(section: str, kind: str, joint: str, bodies: list[str], clearance: float) -> Part:
