@@ -152,3 +152,6 @@ def test_points_are_held_against_the_motion_of_their_channel(study):
     size = max(x.max(), *peaks) - min(x.min(), *peaks)
     assert narrow(run, "stroke") == pytest.approx(NARROW * size, rel=1e-12)
     assert narrow(run, "not.stored") == 0.0
+    y = run.channel("crank.position.y")  # of which there are no extremes but those of the rows
+    assert not [peak for peak in run.peaks if peak.channel == "crank.position.y"]
+    assert narrow(run, "crank.position.y") == pytest.approx(NARROW * np.ptp(y), rel=1e-12)

@@ -40,6 +40,9 @@ def test_killed_stands_until_source_or_test_changes(project):
     Verdicts(project / "verdicts.jsonl").add(one, found)
     (project / "tests/test_other.py").write_text("new")
     assert known(project, one)["verdict"] == "killed"
+    (project / "trsim/line.py").write_text(f"{SOURCE}\n# another one")
+    assert known(project, one) is None
+    (project / "trsim/line.py").write_text(SOURCE)
     (project / "tests/test_line.py").write_text("second")
     assert known(project, one) is None
 

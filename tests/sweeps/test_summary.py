@@ -23,7 +23,7 @@ from trsim.store.read import read
 from trsim.sweeps.go import engine, go
 from trsim.sweeps.plan import plan
 from trsim.sweeps.study import study
-from trsim.sweeps.summary import OF_CHANNELS, OF_CONTACTS, Kept, packed, record
+from trsim.sweeps.summary import OF_CHANNELS, OF_CONTACTS, Kept, packed, record, unpacked
 
 ASKED = ("peak:B.contact_force@0.5 ms..2 ms", "mean:stroke@crank_angle=10 deg..30 deg")
 SWEEP = f"""
@@ -155,6 +155,8 @@ def test_a_record_that_was_lost_is_made_again(scenario, folder, copy):
     assert made(scenario, copy) == ["clearance=0.5mm"]
     assert [case.status for case in study(copy).cases] == ["done", "done"]
     assert study(copy).cases[1].run().told == study(folder).cases[1].run().told
+    assert unpacked(*packed({"of": "this"})) == {"of": "this"}
+    assert unpacked(packed({"of": "that"})[0], packed({"of": "this"})[1]) is None
     records.write_bytes(b"\0" * 100 + records.read_bytes()[100:])
     with pytest.raises(FileError, match="is damaged from byte 0 on"):
         study(copy).cases[0].run()
