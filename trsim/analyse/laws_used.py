@@ -20,7 +20,7 @@ from trsim.analyse.window import scalar_channel, window
 from trsim.arrays import Array
 from trsim.elements.curve import Curve, sampled
 from trsim.elements.friction_law import Friction
-from trsim.elements.prescribed import rates_at
+from trsim.elements.prescribed import rates_along
 from trsim.elements.sprung import RATE, X
 from trsim.errors import UsageError
 from trsim.fields import Spec
@@ -137,7 +137,7 @@ def of_function(run: Run, name: str, spec: Any, full: str, key: str, f: Function
     pulls = getattr(spec, "tension_only", False) and key == "elastic"
     slack = (0.0,) if pulls and min(ends) < 0.0 < max(ends) else ()
     grid = spread(min(ends), max(ends), (*f.x, *slack))
-    y = np.array([value(one) for one in grid.tolist()])
+    y = value(grid)
     if pulls:
         y = np.where(grid > 0.0, np.maximum(y, 0.0), 0.0)
     given = (np.array(f.x), np.array(f.y)) if f.kind == "table" else None
@@ -147,14 +147,14 @@ def of_function(run: Run, name: str, spec: Any, full: str, key: str, f: Function
     return Law(full, told, x, key, met.unit, unit, {"law": (grid, y)}, given, None, known, met.why)
 
 
-def evaluated(f: FunctionSpec, x: str) -> Callable[[float], float]:
+def evaluated(f: FunctionSpec, x: str) -> Callable[[Array], Array]:
     """The function as runs evaluate it, of its one variable."""
     if f.kind == "table":
         numbers = functions.table(f.x, f.y, -1, f.ends, f.interpolation)
     else:
         numbers = functions.expression(expressions.renamed(f.node, {x: "t"}), {})
     tab = np.array(numbers)
-    return lambda at: rates_at(tab, 0, at)[0]
+    return lambda at: rates_along(tab, 0, at)[:, 0]
 
 
 def in_words(f: FunctionSpec, met: Range) -> str:

@@ -143,12 +143,13 @@ def check_room(curve, side, radius):
     import numpy as np
 
     step = max(1, len(curve.u) // 1000)
-    places, tangents = curve.place[::step], curve.tangent[::step]
-    for where, t in zip(places, tangents, strict=True):
-        centre = where + side * radius * np.array([-t[1], t[0]])
-        away = np.linalg.norm(curve.place - centre, axis=1)
+    x, y = np.ascontiguousarray(curve.place.T)
+    places, tangents = curve.place[::step], curve.tangent[::step].tolist()
+    for where, (t_x, t_y) in zip(places, tangents, strict=True):
+        away = (x - (where[0] - side * radius * t_y)) ** 2
+        away += (y - (where[1] + side * radius * t_x)) ** 2
         k = int(np.argmin(away))
-        if away[k] < (1.0 - FITS) * radius:
+        if away[k] < ((1.0 - FITS) * radius) ** 2:
             raise ScenarioError(
                 f"a roller of radius {radius:.6g} m that touches the curve at {named(where)} of "
                 f"its coordinates meets it again at {named(curve.place[k])} (undercutting)",

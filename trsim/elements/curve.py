@@ -16,7 +16,7 @@ from pydantic_core import core_schema
 
 from trsim import expressions
 from trsim.elements.placed import Placed
-from trsim.elements.prescribed import rates_at
+from trsim.elements.prescribed import rates_along
 from trsim.errors import ScenarioError, described
 from trsim.fields import Flag, Unit, direction, point, vector
 from trsim.laws import functions
@@ -284,7 +284,7 @@ def by_formula(spec: Curve) -> _Raw:
     tabs = [np.array(code) for code in codes]
 
     def at(p: Any) -> Any:
-        found = np.array([[rates_at(tab, 0, float(t)) for tab in tabs] for t in p])
+        found = np.stack([rates_along(tab, 0, p) for tab in tabs], axis=1)
         if not np.isfinite(found).all():
             t = p[int(np.argmin(np.isfinite(found).all(axis=(1, 2))))]
             raise ScenarioError(f"has no finite value at s = {t:.6g}", "", ("curve",))

@@ -13,7 +13,7 @@ from trsim.elements.contract import compiled
 from trsim.elements.frames import Along
 from trsim.kernels.columns import constraint_row, f8, i8
 from trsim.kernels.lazy import internal
-from trsim.kernels.signatures import A1, void
+from trsim.kernels.signatures import A1, A2, void
 from trsim.laws.functions import motion
 
 
@@ -41,19 +41,27 @@ def began(scene, e, offset):
     return own.since if own.motion == offset else -1.0
 
 
-@compiled(void(A1, i8, f8, A1))
-def write_rates(tab, offset, t, out):
-    """out = f, f', f'' of a function of tab at t."""
-    out[0], out[1], out[2] = motion(tab, offset, t)
+@compiled(void(A1, i8, A1, A2))
+def write_rates(tab, offset, times, out):
+    """out[k] = f, f', f'' of a function of tab at times[k]."""
+    for k in range(len(times)):
+        out[k, 0], out[k, 1], out[k, 2] = motion(tab, offset, times[k])
+
+
+def rates_along(tab: Any, offset: int, times: Any) -> Any:
+    """f, f', f'' of a function of tab at n times, (n, 3)."""
+    import numpy as np
+
+    out = np.zeros((len(times), 3))
+    write_rates(tab, offset, times, out)
+    return out
 
 
 def rates_at(tab: Any, offset: int, t: float) -> tuple[float, float, float]:
     """f, f', f'' of a function of tab at t."""
     import numpy as np
 
-    out = np.zeros(3)
-    write_rates(tab, offset, t, out)
-    f, f_dot, f_ddot = out.tolist()
+    f, f_dot, f_ddot = rates_along(tab, offset, np.array([t]))[0].tolist()
     return f, f_dot, f_ddot
 
 

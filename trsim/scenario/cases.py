@@ -34,10 +34,22 @@ def cases(tree: Tree) -> dict[str, Tree]:
             what, path = f"not a name of a case: {described(name)}", ("cases", name)
             hint = "It names a file: letters, digits and _ . + -, 60 at most, no sign first."
             raise ScenarioError(what, hint, path, tree.key_place(path))
-    return {name: _case(tree, name) for name in named}
+    bare = _without(tree, {"cases"})
+    return {name: _case(tree, bare, name) for name in named}
 
 
-def _case(tree: Tree, name: str) -> Tree:
+def _without(tree: Tree, sections: set[str]) -> Tree:
+    """A tree without some of its sections; its data are shared."""
+    data = {key: value for key, value in tree.data.items() if key not in sections}
+    marks, keys = (
+        {place: mark for place, mark in marks.items() if not place or place[0] not in sections}
+        for marks in (tree.marks, tree.keys)
+    )
+    return Tree(data, marks, keys, tree.files)
+
+
+def _case(tree: Tree, bare: Tree, name: str) -> Tree:
+    """The tree of a case; bare: what all cases begin with."""
     path = ("cases", name)
     inner = part(tree, path)
     if inner.data is None:
@@ -47,12 +59,7 @@ def _case(tree: Tree, name: str) -> Tree:
         raise ScenarioError(what, path=path, place=tree.place(path))
     if "cases" in inner.data:
         raise ScenarioError("a case has no cases of its own", "", path, tree.place(path))
-    own = {"cases"} | ({"sweep"} if "sweep" in inner.data else set())
-    whole = Tree(
-        {key: value for key, value in deepcopy(tree.data).items() if key not in own},
-        {place: mark for place, mark in tree.marks.items() if place[:1] not in {(k,) for k in own}},
-        {place: mark for place, mark in tree.keys.items() if place[:1] not in {(k,) for k in own}},
-        tree.files,
-    )
+    whole = _without(bare, {"sweep"} if "sweep" in inner.data else set())
+    whole.data = deepcopy(whole.data)
     merge(whole, Tree(deepcopy(inner.data), inner.marks, inner.keys))
     return whole

@@ -94,8 +94,9 @@ def part(tree: Tree, path: tuple) -> Tree:
     data, n = tree.data, len(path)
     for key in path:
         data = data[key]
+    places = list(_paths(data, path))
     marks, keys = (
-        {place[n:]: mark for place, mark in marks.items() if place[:n] == path}
+        {place[n:]: marks[place] for place in places if place in marks}
         for marks in (tree.marks, tree.keys)
     )
     return Tree(data, marks, keys, tree.files)

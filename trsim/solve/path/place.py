@@ -27,7 +27,7 @@ from trsim.elements.contract import (
     Load,
     Memory,
 )
-from trsim.elements.prescribed import AnyDrive, rates_at
+from trsim.elements.prescribed import AnyDrive, rates_along
 from trsim.elements.scene import Scene, scene
 from trsim.laws.friction import CODES
 from trsim.solve.path.balance import LOADS, ROOM, SLOWNESS, STATE, TIME, system, travel, unbalanced
@@ -154,8 +154,8 @@ class Equations:
         y, first = y.copy(), self.work.n_q + self.work.n_v
         for state, motion, since in self.states:
             times = t0 - since + NODE * (t - t0)
-            rates = [rates_at(self.work.tab, motion, float(x))[0] for x in times]
-            y[first + state] += (t - t0) * float(np.dot(WEIGHT, rates))
+            rates = rates_along(self.work.tab, motion, times)[:, 0]
+            y[first + state] += (t - t0) * float(WEIGHT @ rates)
         return y
 
     def moved(self, y: Array, dx: Array) -> Array:
