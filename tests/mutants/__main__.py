@@ -18,7 +18,7 @@ from .drawn import ROOT, drawn
 from .equivalent import EQUIVALENT
 from .operators import Mutation
 from .trial import Times, Tree, fresh, tried
-from .verdicts import KILLED, Verdicts
+from .verdicts import KILLED, Verdicts, test_of
 
 FOLDER = ROOT / "runs" / "mutants"
 COUNT = 300
@@ -34,25 +34,35 @@ def left(wanted: list[Mutation], known: Verdicts, again: bool) -> list[tuple[int
     ]  # fmt: skip
 
 
-def run(todo: list[tuple[int, Mutation]], known: Verdicts, workers: int, seconds: float) -> None:
+def first_tests(one: Mutation, known: Verdicts, named: list[str]) -> list[str]:
+    """The tests to try before all others: those named, or the one that noticed it before."""
+    before = known.before(one)
+    return named or ([before["by"]] if before and exists(before["by"]) else [])
+
+
+def exists(test: str) -> bool:
+    return bool(file := test_of(test)) and (ROOT / file).is_file()
+
+
+def run(todo: list[tuple[int, Mutation]], known: Verdicts, a: argparse.Namespace) -> None:
     """Try mutations side by side, each worker in copies of its own."""
     trees: SimpleQueue[Tree] = SimpleQueue()
     times = Times(FOLDER / "seconds.json")
-    for k in range(min(workers, len(todo))):
+    for k in range(min(a.workers, len(todo))):
         trees.put(fresh(FOLDER, k, times))
     writing = threading.Lock()
 
     def one_of(number: int, one: Mutation) -> dict[str, Any]:
         tree = trees.get()
         try:
-            found = tried(tree, one, number, seconds)
+            found = tried(tree, one, number, a.seconds, first_tests(one, known, a.tests))
         finally:
             trees.put(tree)
         with writing:
             known.add(one, found)
         return found
 
-    with ThreadPoolExecutor(workers) as pool:
+    with ThreadPoolExecutor(a.workers) as pool:
         for job in as_completed([pool.submit(one_of, *item) for item in todo]):
             found = job.result()
             print(f"{found['verdict']} {found['seconds']:.0f} s {found['told']} {found['by']}",
@@ -92,20 +102,26 @@ def main() -> None:
     read.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     read.add_argument("--seconds", type=float, default=SECONDS, help="for one mutation")
     read.add_argument("--again", action="store_true", help="also what survived for want of time")
-    read.add_argument("--list", action="store_true", help="what is drawn; nothing is tried")
+    read.add_argument("--only", type=int, nargs="+", default=(), help="numbers, as --list has them")
+    read.add_argument("--tests", nargs="+", default=[], help="to try before all others")
+    read.add_argument(
+        "--list", action="store_true", help="what is drawn and known; nothing is tried"
+    )
     read.add_argument("--table", action="store_true", help="what is known; nothing is tried")
     a = read.parse_args()
-    wanted = drawn(a.count, a.seed)
+    wanted, known = drawn(a.count, a.seed), Verdicts()
     if a.list:
-        for one in wanted:
-            print(one.told((ROOT / one.file).read_bytes()))
+        for number, one in enumerate(wanted):
+            found = known.of(one) or {"verdict": "not known"}
+            print(number, found["verdict"], one.told((ROOT / one.file).read_bytes()))
         return
     FOLDER.mkdir(parents=True, exist_ok=True)
-    known = Verdicts()
     if not a.table:
         todo = left(wanted, known, a.again)
+        if a.only:
+            todo = [(number, wanted[number]) for number in a.only]
         print(f"{len(wanted)} mutations, {len(todo)} to try", flush=True)
-        run(todo, known, a.workers, a.seconds)
+        run(todo, known, a)
         known.tidy(wanted)
     share = table(wanted, known)
     sys.exit(0 if share >= ENOUGH and not left(wanted, known, False) else 1)

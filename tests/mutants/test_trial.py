@@ -74,3 +74,9 @@ def test_a_process_that_dies_is_noticed(tree):
     )
     found = trial.tested(tree.mutated, tree.cache, ["tests/room/test_other.py"], set(), 100.0)
     assert found.failed == trial.DIED
+
+
+def test_a_test_named_first_comes_first(tree):
+    named = ["tests/room/test_length.py::test_one_way"]
+    found = tried(tree, one("arithmetic", "+"), 0, 100.0, named)
+    assert (found["verdict"], found["by"], found["tests"]) == ("killed", *named, 1)

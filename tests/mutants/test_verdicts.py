@@ -18,6 +18,7 @@ def project(tmp_path, monkeypatch):
         (tmp_path / room).mkdir()
     (tmp_path / "trsim/line.py").write_text(SOURCE)
     (tmp_path / "tests/test_line.py").write_text("first")
+    monkeypatch.setattr(verdicts, "ROOT", tmp_path)
     monkeypatch.setattr(verdicts, "sha", lambda file: (tmp_path / file).read_text())
     monkeypatch.setattr(
         verdicts, "digest", lambda: "".join(p.read_text() for p in tmp_path.rglob("*.py"))
@@ -28,7 +29,8 @@ def project(tmp_path, monkeypatch):
 def told(verdict, by=""):
     (one,) = (m for m in mutations("trsim/line.py", SOURCE.encode()) if m.operator == "arithmetic")
     return one, {"file": one.file, "start": one.start, "new": one.new, "operator": one.operator,
-                 "verdict": verdict, "by": by, "whole": True}  # fmt: skip
+                 "verdict": verdict, "by": by, "whole": True,
+                 "told": one.told(SOURCE.encode())}  # fmt: skip
 
 
 def known(project, one):
@@ -66,3 +68,16 @@ def test_tidied_file_has_what_stands_once(project):
     again.tidy([one])
     (line,) = file.read_text().splitlines()
     assert json.loads(line)["verdict"] == "killed"
+
+
+def test_what_noticed_it_before_is_told_though_lines_have_moved(project):
+    one, found = told("killed", "tests/test_line.py::test_sum")
+    Verdicts(project / "verdicts.jsonl").add(one, found)
+    moved = f'"""A line."""\n{SOURCE}'
+    (project / "trsim/line.py").write_text(moved)
+    (one,) = (m for m in mutations("trsim/line.py", moved.encode()) if m.operator == "arithmetic")
+    kept = Verdicts(project / "verdicts.jsonl")
+    assert kept.of(one) is None
+    assert kept.before(one)["by"] == "tests/test_line.py::test_sum"
+    kept.tidy([one])
+    assert Verdicts(project / "verdicts.jsonl").before(one) == kept.before(one)

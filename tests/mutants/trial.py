@@ -202,12 +202,18 @@ def ended(process: subprocess.Popen) -> None:
         process.stdout.close()
 
 
-def tried(tree: Tree, one: Mutation, number: int, seconds: float) -> dict[str, Any]:
-    """What became of a mutation: killed by which test, or after how many tests it survived."""
+def tried(
+    tree: Tree, one: Mutation, number: int, seconds: float, first: list[str] | None = None
+) -> dict[str, Any]:
+    """What became of a mutation: killed by which test, or after how many tests it survived.
+
+    first: tests that are tried before those nearest to it.
+    """
     begun, seen, doubtful = time.monotonic(), 0, set[str]()
     put(tree, one, number)
     try:
-        for stage in map(tree.times.sorted, stages(ROOT, one.file)):
+        nearest = map(tree.times.sorted, stages(ROOT, one.file))
+        for stage in [[test] for test in first or ()] + list(nearest):
             while True:
                 left = seconds - (time.monotonic() - begun)
                 less = tree.broken | doubtful
@@ -234,6 +240,8 @@ def repeated(found: Found, stage: list[str]) -> list[str]:
     """The tests to run again: the one that failed, or those it died or hung in."""
     if found.failed and found.failed != DIED:
         return [found.failed]
+    if "::" in stage[0]:
+        return stage
     at = stage.index(found.ended[-1].split("::")[0]) if found.ended else 0
     return stage[at : at + 2]
 

@@ -1,12 +1,14 @@
 """What is known of mutations, in a file that goes with the project: one line of JSON each.
 
-That a test noticed a mutation stands while the source file and the file of that test are the same.
-That none did stands while nothing at all has changed.
+That a test noticed a mutation stands while the source file and the file of that test are the same;
+after a change that test is the first to be tried again.  That none did stands while nothing at all
+has changed.
 """
 
 import hashlib
 import json
 import os
+import re
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -43,6 +45,7 @@ class Verdicts:
 
     file: Path = FILE
     known: dict[Key, dict[str, Any]] = field(default_factory=dict)
+    lapsed: dict[str, dict[str, Any]] = field(default_factory=dict)  # killed before a change
 
     def __post_init__(self) -> None:
         """Read the file.  A line that was cut off counts as none."""
@@ -54,9 +57,15 @@ class Verdicts:
                 continue
             if stands(one):
                 self.known[at] = one
+            if one["verdict"] == KILLED:
+                self.lapsed[likeness(one["told"])] = one
 
     def of(self, one: Mutation) -> dict[str, Any] | None:
         return self.known.get(key(one))
+
+    def before(self, one: Mutation) -> dict[str, Any] | None:
+        """What was known of a mutation like this one before its file or its test changed."""
+        return self.lapsed.get(likeness(one.told((ROOT / one.file).read_bytes())))
 
     def add(self, one: Mutation, found: dict[str, Any]) -> None:
         """Keep a verdict, at once."""
@@ -69,11 +78,16 @@ class Verdicts:
             os.fsync(log.fileno())
 
     def tidy(self, wanted: list[Mutation]) -> None:
-        """Leave in the file what stands of these mutations, in their order."""
-        found = [told for one in wanted if (told := self.of(one))]
+        """Leave in the file what stands or was known of these mutations, in their order."""
+        found = [told for one in wanted if (told := self.of(one) or self.before(one))]
         fresh = self.file.with_suffix(".new")
         fresh.write_text("".join(json.dumps(told) + "\n" for told in found))
         fresh.replace(self.file)
+
+
+def likeness(told: str) -> str:
+    """What tells a mutation when lines have moved: its file, operator, old and new text."""
+    return re.sub(r":\d+ ", " ", told, count=1)
 
 
 def stands(one: dict[str, Any]) -> bool:
