@@ -100,6 +100,20 @@ def test_nothing_to_vary(scenario, trsim):
     assert code == 2 and "says nothing to vary" in err
 
 
+def test_into_the_folder_of_a_report(scenario, trsim):
+    """By default a report of runs/NAME.h5 and a sweep of NAME.yaml have one folder."""
+    assert trsim("run", "crank.yaml", "--set", "solver.end=0.5 ms", "-o", "sw.h5")[0] == 0
+    assert trsim("report", "sw.h5", "--plot", "time : time")[0] == 0
+    vary = ("sweep", "crank.yaml", "--set", f"{B}=[0.4 mm]", *FAST)
+    own = scenario.parent / "sw/notes.txt"
+    own.write_text("mine")
+    code, _, err = trsim(*vary)
+    assert code == 2 and "a folder of other files" in err
+    own.unlink()
+    assert trsim(*vary)[0] == 0
+    assert [case.status for case in study("sw").cases] == ["done"]
+
+
 def test_no_sweep_there(scenario, trsim):
     code, _, err = trsim("status", "nowhere")
     assert code == 7 and "no such folder" in err

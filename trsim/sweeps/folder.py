@@ -12,7 +12,7 @@ from typing import Any
 
 from trsim.errors import FileError, UsageError
 from trsim.store.own import remove
-from trsim.store.target import Kind, fresh, headed, replaceable
+from trsim.store.target import FIGURES, HEADER, Kind, fresh, headed, replaceable
 from trsim.sweeps.ledger import WORD, Entry, in_a_line
 from trsim.sweeps.plan import CASE, Plan
 from trsim.sweeps.values import value
@@ -23,6 +23,10 @@ STARTED = re.compile(r"ledger(-\d+of\d+)?\.jsonl(\.lock)?|plan\.json\.\d+(-\d+)?
 TITLES, FIRST = ("name", "status", "reason"), b'{"format": "trsim sweep"'
 INDEX = headed(*TITLES)
 PLAN = Kind("plan of a sweep", lambda start: start.startswith(FIRST))
+DRAWN = {f".{ending}": kind for ending, kind in FIGURES.items()} | {
+    ".html": Kind("page of trsim", lambda start: b'content="trsim"' in start[:HEADER]),
+    ".glb": Kind("animation of trsim", lambda start: b'"generator":"trsim"' in start),
+}
 NEEDED = {"version", "source", "engine", "keys", "units", "method", "samples", "seed", "cases"}
 KINDS = {"source": str, "engine": str, "keys": list, "units": dict, "written": dict, "method": str,
          "samples": int, "seed": int, "cases": list, "numbers": list, "sets": list}  # fmt: skip
@@ -31,19 +35,17 @@ LAST = ("attempts", "wall_time", "content_sha256")
 
 
 def check_usable(folder: Path) -> None:
-    """Check that a folder is that of a sweep, empty, or not there."""
+    """Check that a folder is that of a sweep, of a report of one run, empty, or not there.
+
+    `run NAME.yaml`, `report` and `sweep NAME.yaml` name the same folder, in either order.
+    """
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder", "Name another one with -o.")
-    if (
-        folder.is_dir()
-        and not (folder / "plan.json").exists()
-        and not all(map(_of_a_start, folder.iterdir()))
-    ):
-        what = f"{folder} is a folder of other files, not of a sweep"
-        hint = "Name another one with -o."
-        if Path(f"{folder}.h5").exists():  # as `report` of that run makes it
-            hint = f"It has figures of {folder}.h5, perhaps.  {hint}"
-        raise UsageError(what, hint)
+    if folder.is_dir() and not (folder / "plan.json").exists():
+        found = [path for path in folder.iterdir() if not _of_a_start(path)]
+        if found and not _of_a_report(found):
+            what = f"{folder} is a folder of other files, not of a sweep"
+            raise UsageError(what, "Name another one with -o.")
     for name, kind in (("index.csv", INDEX), ("plan.json", PLAN)):
         replaceable(folder / name, kind)
 
@@ -74,6 +76,19 @@ def _of_a_start(path: Path) -> bool:
     if path.name == "cases":
         return path.is_dir() and not any(path.iterdir())
     return STARTED.fullmatch(path.name) is not None and path.is_file()
+
+
+def _of_a_report(paths: list[Path]) -> bool:
+    """Whether these are figures and pages of `trsim report`, and perhaps tables beside them."""
+    drawn = [path for path in paths if path.suffix != ".csv"]
+    return bool(drawn) and all(map(_drawn, drawn))
+
+
+def _drawn(path: Path) -> bool:
+    kind = DRAWN.get(path.suffix)
+    with suppress(UsageError, FileError):
+        return kind is not None and path.is_file() and bool(replaceable(path, kind))
+    return False
 
 
 def write_plan(folder: Path, plan: Plan, engine: str) -> None:
