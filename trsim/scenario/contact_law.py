@@ -3,7 +3,7 @@
 stiffness: internal    Hertz, journal in bearing    K = 4/(3 (s_i + s_j)) sqrt(R_i R_j/(R_i - R_j))
            paper       the same with R_i + R_j
            cylinder    line contact over `width`
-           a number    K in N/m^1.5                 s = (1 - nu^2)/E
+           a number    K in N/m^exponent            s = (1 - nu^2)/E
            table       by points, `table`, with the damping of `normal`; of a ball on a surface
 
 Laws of instantaneous impacts (laws/impact.py) rest on the same stiffness, with the damping of
@@ -17,11 +17,11 @@ pair: steel-rubber     moduli, friction and, where one is known, restitution of 
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from annotated_types import Ge, Gt, Interval
-from pydantic import model_validator
+from pydantic import ValidationInfo, model_validator
 
 from trsim.elements.contract import Impact
 from trsim.elements.friction_law import Friction
-from trsim.errors import ScenarioError
+from trsim.errors import ScenarioError, within
 from trsim.fields import Spec, Unit
 from trsim.laws.contact import (
     RULES,
@@ -31,6 +31,7 @@ from trsim.laws.contact import (
     hertz_stiffness,
 )
 from trsim.laws.force_tables import rising
+from trsim.numbers import number
 from trsim.scenario.pairs import PAIRS, listed, values, with_pair
 
 __doc__ = f"{__doc__}\n{listed()}\n"  # what `explain` prints
@@ -65,6 +66,21 @@ class Normal(NamedTuple):
     ramp: float  # m; 0 of laws of restitution
 
 
+def _in_own_unit(data: dict, parameters: Any) -> dict:
+    """The same with the number of a stiffness that has a unit, N/m^exponent."""
+    text = data.get("stiffness")
+    if "exponent" not in data or not isinstance(text, str) or text in STIFFNESS_NEEDS:
+        return data
+    try:
+        exponent = number(data["exponent"], ("-",), parameters)
+    except ScenarioError:  # the field itself says so
+        return data
+    if text[:1].isalpha() and text not in (parameters or {}):
+        return data  # a misspelt word, or an expression, which has no unit
+    units = ("N/m" if exponent == 1.0 else f"N/m^{exponent:g}",)
+    return {**data, "stiffness": within("stiffness", number, text, units, parameters)}
+
+
 def _needs(spec: Any, what: str, keys: tuple[str, ...]) -> None:
     missing = [key for key in keys if getattr(spec, key) is None]
     if missing:
@@ -76,7 +92,7 @@ class ContactLaw(Spec):
 
     pair                    two materials, for what is not given; the first is that of the surface
     normal                  how force depends on penetration and its rate
-    stiffness               a word that computes it from size and material, or the number
+    stiffness               a word that computes it from size and material, or K, N/m^exponent
     exponent                of the penetration
     table                   rows [penetration, force] of stiffness table, both rising from [0, 0] on
     bearing_radius          radius of the bearing, and lever of the friction
@@ -100,7 +116,7 @@ class ContactLaw(Spec):
         *("newton", "poisson"),
     ]
     stiffness: Annotated[
-        Literal["internal", "paper", "cylinder", "hertz", "table"] | Annotated[float, Gt(0)],
+        Literal[*STIFFNESS_NEEDS] | Annotated[float, Gt(0)],
         Unit("N/m^1.5"),
     ] = "internal"
     exponent: Annotated[float, Interval(ge=1, le=3), Unit("-")] = 1.5
@@ -119,10 +135,12 @@ class ContactLaw(Spec):
 
     @model_validator(mode="before")
     @classmethod
-    def of_pair(cls, data: Any) -> Any:
-        """What is not given is that of the pair."""
-        known = isinstance(data, dict) and data.get("pair") in [*PAIRS]
-        return with_pair(data) if known else data
+    def of_pair(cls, data: Any, info: ValidationInfo) -> Any:
+        """What is not given is that of the pair; a stiffness has the unit of its exponent."""
+        if not isinstance(data, dict):
+            return data
+        data = with_pair(data) if data.get("pair") in [*PAIRS] else data
+        return _in_own_unit(data, (info.context or {}).get("parameters"))
 
     @model_validator(mode="after")
     def complete(self) -> "ContactLaw":
