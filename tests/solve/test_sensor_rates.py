@@ -108,6 +108,14 @@ def test_from_rest_on_a_jump_it_goes_or_ends_the_run():
     assert r.outcome.status == "done" and not r["stroke"].any()
 
 
+@pytest.mark.parametrize("limit", ["", "max_steps: 2000, "])
+def test_what_a_jump_of_a_place_holds_is_named(limit):
+    """1 N away from where the load leaps by 3 N: it can neither stay nor go."""
+    r = slide('"1 - 3*(stroke > 0)"', 0.0, 1e6, f"{limit}{METHODS[0]}")
+    assert r.outcome.status == "failed"
+    assert "forces.load.force: what it depends on rests at a corner" in r.outcome.reason
+
+
 @pytest.mark.parametrize("method", METHODS[:3])
 def test_a_comparison_that_does_not_jump_is_no_friction(method):
     """A damper of one way by a comparison: swings die out about a rate of zero for a long time."""

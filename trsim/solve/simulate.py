@@ -13,7 +13,7 @@ from trsim.assemble.switches import UserEvent
 from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
-from trsim.solve.diagnose.blame import on_a_jump, undecided, why
+from trsim.solve.diagnose.blame import on_a_corner, on_a_jump, undecided, why
 from trsim.solve.diagnose.crossed import examine
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.diagnose.no_number import refuse_no_number, unshown
@@ -307,7 +307,8 @@ def ending(
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
     at = mechanism.in_stage(r.stage, r.left_out)
     if reason != NO_STEPS_LEFT:
-        text = why(scenario, at, r) or text
-    elif jump := on_a_jump(scenario, at, r.y):
+        held = on_a_corner(at, work) if reason in (rec.STEP_TOO_SMALL, rec.CRAWL) else ""
+        text = why(scenario, at, r) or held or text
+    elif jump := on_a_jump(scenario, at, r.y) or on_a_corner(at, work):
         text = f"{text}; {jump}"
     return "failed", text

@@ -6,12 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
+from trsim.assemble.features import HELD_FROM, HELD_TO, SENSED
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import Pair
 from trsim.elements.prescribed import AnyDrive
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError
+from trsim.laws.functions import FREE
 from trsim.solve.diagnose.locked import locked
 from trsim.solve.diagnose.poles import pole_near
 from trsim.solve.diagnose.singular import singular
@@ -99,6 +101,20 @@ def on_a_jump(scenario: Any, mechanism: Mechanism, y: Array) -> str:
                 "there by less is driven back to the jump from both sides, in ever shorter steps: "
                 "let `elastic` be 0 at a stretch of 0 and rise in a short way, as "
                 f"{instance.row.leaps:.4g}*step(stretch, 0, 0, 0.001, 1) does"
+            )
+    return ""
+
+
+def on_a_corner(mechanism: Mechanism, w: Any) -> str:
+    """Which function is left free on a corner, in words; empty where none is."""
+    for function, row in zip(mechanism.functions, w.feature, strict=True):
+        places = w.held[row[HELD_FROM] : row[HELD_TO]]
+        if row[SENSED] and np.any(w.tab[places] == FREE):
+            return (
+                f"{function.name}: what it depends on rests at a corner; where it jumps there, as "
+                "sign, floor and comparisons do, what is held by less than the jump is driven back "
+                "from both sides, in ever shorter steps: let it rise in a short way, as "
+                "step(x, x0, f0, x1, f1) does"
             )
     return ""
 
