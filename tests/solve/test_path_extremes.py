@@ -150,3 +150,12 @@ output: {{every: {every}}}
     high, _, low, _ = peaks(r, "jack.force")
     assert high == pytest.approx(top, abs=ENOUGH * (top - bottom))
     assert low == pytest.approx(bottom, abs=ENOUGH * (top - bottom))
+
+
+def test_what_inertia_would_add_between_rows():
+    """Both rows have one speed; between them the rod is faster and slower."""
+    motion = 'position: "3*t + 0.05*sin(4*pi*t)"'
+    few, many = (path(every=every, motion=motion).outcome.statistics for every in (0.5, 1e-3))
+    add = (0.05 + M * R**2) * 0.05 * (4 * np.pi) ** 2
+    assert many["inertia_ratio"] == pytest.approx(add / (M * G * R), rel=0.01)
+    assert few["inertia_ratio"] == pytest.approx(many["inertia_ratio"], rel=0.3)

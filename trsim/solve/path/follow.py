@@ -380,7 +380,7 @@ class Path:
 
     def accept(self, place: Place, trial: Place, smooth: bool) -> None:
         """Keep the place that was known last, with accelerations by those next to it."""
-        self.kept(place, trial)
+        self.kept(place, trial, smooth)
         self.before = place
         work = self.eq.work
         poses(work, trial.y)
@@ -400,7 +400,8 @@ class Path:
         if self.way(self.eq.anchor, place.y) > MOVED:
             self.eq.anchor = place.y.copy()
 
-    def kept(self, place: Place, after: Place | None) -> None:
+    def kept(self, place: Place, after: Place | None, smooth: bool = False) -> None:
+        """Keep a place; smooth: the way from there to the place after has no corner."""
         a = slope(self.before, place, after, APART * self.every)
         row = round(place.t / self.every)
         at_row = row >= self.next_row and abs(place.t - row * self.every) <= SAME * self.end
@@ -409,6 +410,8 @@ class Path:
         if at_row:  # between rows a path may have a corner, or an end at which it has no speed
             steady = slope(self.before, place, after, STEADY * self.every)
             self.results.inertia(place, steady)
+        elif smooth and self.before is not None:
+            self.results.inertia(place, slope(None, place, after, APART * self.every))
         self.results.touching(place, out, self.looks.closed)
         if at_row:
             self.next_row = row + 1
