@@ -159,3 +159,22 @@ def test_nothing_is_joined_to_the_ground():
     held = text.replace("[ground, rod]", "[crank, rod]")
     held = held.replace("forces:", f"forces:\n  spring: {spring}")
     assert not any("ground" in message for message in lint(loads(held)))
+
+
+INERTIA = "inertia: [0.001, 0.02, 0.02]"
+
+
+@pytest.mark.parametrize("inertia, told", [
+    ("[0, 0, 0]", ""), ("[0, 0, 0.02]", "only one inertia above zero"),
+    ("[0.001, 0.02, 0.03]", "above the sum of the others"),
+])  # fmt: skip
+def test_inertias_of_a_body_that_has_hardly_any(inertia, told):
+    """A body without any is one that is meant; with one alone there is none."""
+    notes = [note for note in found((INERTIA, f"inertia: {inertia}")) if "rod.inertia" in note]
+    assert len(notes) == bool(told) and all(told in note for note in notes)
+
+
+@pytest.mark.parametrize("clearance, told", [("2 mm", False), ("2.1 mm", True)])
+def test_a_bearing_that_is_loose(clearance, told):
+    notes = found(("0.3 mm", clearance))
+    assert any("of the bearing radius" in note for note in notes) == told

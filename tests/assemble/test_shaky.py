@@ -158,3 +158,11 @@ def test_definite_combinations_are_found_and_only_those():
         assert np.linalg.eigvalsh(np.tensordot(c, forms, 1)).min() > 0
     assert definite(np.array([[[1.0, 0.0], [0.0, -1.0]]])) is None
     assert definite(np.zeros((0, 2, 2))) is None
+
+
+@pytest.mark.parametrize("size", [1e-8, 1.0, 1e8])
+def test_what_is_definite_is_so_in_any_unit(size):
+    one = size * np.array([np.diag([1.0, 2.0, 3.0])])
+    assert definite(one) is not None
+    assert definite(-one) is not None
+    assert definite(size * np.array([np.diag([1.0, -1.0, 3.0])])) is None

@@ -121,3 +121,22 @@ def test_the_distance_bends_no_more_than_is_said(seed):
         bend, seen = (s2 - 2 * s1 + s0) / h**2, seen + 1
         assert -1.0 / (q.reach - s1 - h) - 1e-6 <= bend <= 1.0 / (q.sharp + s1 - h) + 1e-6
     assert seen > 300
+
+
+def test_a_search_for_the_nearest_piece_looks_at_a_node_once(monkeypatch):
+    """A tree of n leaves has 2 n - 1 nodes; a search that looked at more would never end."""
+    from trsim.laws import surfaces
+
+    round_it = np.linspace(0.0, 2 * np.pi, 40, endpoint=False)
+    waves = (1.0 + 0.2 * np.sin(5 * round_it)) * np.array([np.cos(round_it), np.sin(round_it)])
+    tab = np.array(profile(waves.T.tolist(), 0.01, True, 1).numbers)
+    leaves, looked = 1 << int(tab[1]), []
+
+    def off_node(tab, place, x, y):
+        looked.append(place)
+        assert len(looked) < 2 * leaves
+        return 0.0
+
+    monkeypatch.setattr(surfaces, "off_node", off_node)
+    surfaces.elsewhere.python(tab, 0, leaves, 0.7, 0.8, (np.inf, -1))
+    assert len(set(looked)) == len(looked) > leaves > 8

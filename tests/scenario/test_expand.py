@@ -1,13 +1,23 @@
 """extends, CSV tables, --set and parameters; nothing outside the project is read."""
 
+import math
 import os
 from hashlib import sha256
 
 import pytest
 
 from trsim.errors import FileError, ScenarioError, TrsimError, UsageError
+from trsim.numbers import Measured
 from trsim.scenario.cases import cases
-from trsim.scenario.expand import DEEPEST, MOST, expand, expand_text, parameters, rows
+from trsim.scenario.expand import (
+    DEEPEST,
+    MOST,
+    expand,
+    expand_text,
+    numbers,
+    parameters,
+    rows,
+)
 from trsim.scenario.load import load
 from trsim.scenario.text import read
 from trsim.sweeps.plan import plan
@@ -443,3 +453,11 @@ def test_a_parameter_keeps_its_dimension(tmp_path, how):
     for push in ("2.5 kN", "2500", "-3 N"):
         assert load(path if how == "set" else tmp_path / "base.yaml", [f"parameters.push={push}"])
     assert load(tmp_path / "base.yaml", ["parameters.share=0.25"])
+
+
+def test_a_parameter_made_of_angles_is_an_angle_itself():
+    """No unit is written beside it: what is made of 30 deg goes into an angle as it is."""
+    values, problems = numbers({"a": "30 deg", "b": "2*a", "c": "2*3", "d": 4}, {}, ())
+    assert not problems
+    assert isinstance(values["b"], Measured) and values["b"] == pytest.approx(math.pi / 3)
+    assert not isinstance(values["c"], Measured) and not isinstance(values["d"], Measured)

@@ -113,3 +113,9 @@ def test_sets_that_cannot_be(sets, said):
     with pytest.raises(TrsimError) as error:
         scenario("loads: {gust: limit}", [sets])
     assert said in str(error.value)
+
+
+def test_a_limit_load_is_the_load_as_it_is_written():
+    """Unless a set says otherwise, the largest load that is expected is that of the scenario."""
+    forces = scenario("loads: {gust: limit}").forces
+    assert forces["gusts"].torque.y == (1.0, 5.0)

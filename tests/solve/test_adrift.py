@@ -11,10 +11,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from trsim.solve.diagnose.adrift import of_drift
+from trsim.assemble.equations import derivative
+from trsim.elements.contract import SCENE, compiled
+from trsim.elements.scene import scene
+from trsim.kernels.signatures import float64
+from trsim.solve.diagnose.adrift import of_drift, plain
+from trsim.solve.start.consistent import start
 
 from ..overconstrained import cranks, text
-from ..runs import run
+from ..runs import assemble, run, scenario
 from .test_branches import inertia, weight
 from .test_drawn_branches import drawn
 
@@ -157,3 +162,24 @@ def test_accelerations_that_feel_open_joints_end_a_run_that_closes_none():
             assert "stabilisation: projection" in r.outcome.reason
             ended += 1
     assert ended > 1  # else nothing was tested
+
+
+@compiled(float64(SCENE))
+def least_of_rows(s):
+    return plain(s)
+
+
+def test_asked_how_far_rows_are_from_each_other_the_factors_are_those_of_before():
+    """Next steps are solved with them."""
+    read = scenario("""
+bodies: {box: {mass: 4, inertia: 1, at: [1, 2]}}
+joints: {hinge: {type: revolute, bodies: [ground, box], at: [0, 0]}}
+solver: {end: 1}
+""")
+    mechanism = assemble(read)
+    begun = start(read, mechanism, located=True)
+    w = scene(mechanism.model)
+    derivative(w, 0.0, begun.y, np.zeros_like(begun.y))
+    before = w.value.copy()
+    assert 0.0 < least_of_rows(w) <= 1.0
+    assert w.value == pytest.approx(before, rel=1e-14)

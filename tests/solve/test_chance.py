@@ -1,8 +1,11 @@
 """Extremes of forces that are chance are told, and only those."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from trsim.solve.diagnose.chance import astray
 from trsim.solve.diagnose.doubts import doubts
 
 from ..runs import run
@@ -84,3 +87,15 @@ def test_unequal_masses_are_no_such_place():
     """A light coupler makes pivots small everywhere."""
     text = FLAT.format(end=0.3).replace("mass: 2, inertia: 0.1", "mass: 1e-7, inertia: 1e-8")
     assert not told(run(text))
+
+
+@pytest.mark.parametrize("crossings, given, expected", [
+    (0, 0.0, False), (1, 0.0, True), (0, 0.5, True), (0, 1e-9, False),
+])  # fmt: skip
+def test_a_motion_that_kept_its_branch_and_its_energy_is_right(crossings, given, expected):
+    scenario = SimpleNamespace(solver=SimpleNamespace(tolerance=1e-6, step=None))
+    outcome = SimpleNamespace(
+        statistics={"work_of_projection_relative": given} if given else {},
+        record=SimpleNamespace(crossings=crossings),
+    )
+    assert astray(scenario, outcome) == expected

@@ -5,7 +5,8 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from trsim.solve.diagnose.linearised import linearised
+from trsim.elements.scene import scene as workspace
+from trsim.solve.diagnose.linearised import Probe, linearised, smooth
 from trsim.solve.start.consistent import start
 
 from ..linkages import INERTIA, slider_crank
@@ -202,3 +203,26 @@ initial: {{equilibrium: [pin]}}
 def test_a_driven_mechanism_has_no_freedom():
     found = linear(slider_crank("true", "drives: {motor: {joint: A, velocity: 5}}"))
     assert found.A.shape == (0, 0)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_a_bar_moves_in_as_many_ways_whatever_it_weighs(size):
+    """A hinged bar of two elements with a disc at its end."""
+    text = f"""
+bodies:
+  bar: {{type: ancf_cable, start: [0, 0, 0], end: [1, 0, 0], section: {{width: 0.1, height: 0.1}},
+        elements: 2, youngs_modulus: {1e9 * size}, density: {700 * size}}}
+  disc: {{mass: {size}, inertia: {size}, at: [1, 0]}}
+joints:
+  hinge: {{type: revolute, bodies: [ground, bar], at: [0, 0]}}
+  weld: {{type: fixed, bodies: [bar, disc], at: [1, 0]}}
+"""
+    read = scenario(text, "solver.end=1")
+    mechanism = assemble(read)
+    begun = start(read, mechanism, located=True)
+    work = workspace(smooth(mechanism))
+    work.mem[:], work.branch[:] = begun.mem, begun.branch
+    ways = Probe(mechanism, work, begun).ways
+    assert ways.T @ ways == pytest.approx(np.eye(ways.shape[1]), abs=1e-9)
+    # all but the place and slope of the node in the middle, which nothing else is tied to
+    assert ways.shape == (10, 6)

@@ -71,3 +71,8 @@ def test_a_damped_free_motion_is_one_that_is_free_and_one_that_decays():
     still, slows = found(oscillator(2.0, 0.0, 6.0))
     assert (still.kind, slows.kind) == ("free", "decays")
     assert slows.rate == pytest.approx(-3.0, rel=1e-6)
+
+
+def test_of_motions_without_swings_the_slowest_comes_first():
+    slow, fast = found(oscillator(1.0, 100.0, 50.0))
+    assert (slow.rate, fast.rate) == pytest.approx((-25 + sqrt(525), -25 - sqrt(525)), rel=1e-6)
