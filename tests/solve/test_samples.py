@@ -8,7 +8,7 @@ from numpy.polynomial import Polynomial
 
 from trsim.solve.march import record as rec
 from trsim.solve.march.peaks import guessed
-from trsim.solve.march.polynomials import along, differences, lay, polynomial
+from trsim.solve.march.polynomials import polynomial
 from trsim.solve.march.samples import NOT_LAID, bounds, nodes, push, through
 
 from ..pieces import nothing, piece
