@@ -97,7 +97,7 @@ def test_a_path_ends_with_a_row_of_its_end(planar, forces):
 
 
 def test_angles_go_on_over_half_a_turn():
-    r = run(rod('position: "7*t"'))
+    r = run(rod('position: "7*t"', planar="false"))
     assert r["turn"] == pytest.approx(7.0 * r.t, abs=1e-9)
     assert r["motor.force"] == pytest.approx(2 * G * 0.2 * np.cos(7.0 * r.t), abs=1e-8)
 
