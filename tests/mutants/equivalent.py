@@ -32,7 +32,8 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
     ),
     (
         "trsim/elements/bend.py",
-        "STRAIGHT = 1e-10  # sine of a bend below which rounding alone says about which axis it bends",
+        "STRAIGHT = 1e-10  "
+        "# sine of a bend below which rounding alone says about which axis it bends",
         "2e-10",
     ): "rounding of places is larger than a bend that is in between, and so is what it turns by",
     (
@@ -47,7 +48,8 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
     ): "every piece has one place and one tangent",
     (
         "trsim/elements/sprung.py",
-        "low = min((y for x, y in zip(elastic.x, elastic.y, strict=True) if x >= 0.0), default=0.0)",
+        "low = min((y for x, y in zip(elastic.x, elastic.y, strict=True) if x >= 0.0), "
+        "default=0.0)",
         "1.0",
     ): "what stands for a table without such points is asked only whether it is below zero",
     ("trsim/laws/contact.py", "for k in range(3, 20):", "21"): (

@@ -57,6 +57,26 @@ def test_a_step_that_is_not_reached_is_made_again_half_as_long():
     assert again == (begun, pytest.approx(0.5 * (begun + to), rel=1e-12))
 
 
+def test_a_step_is_at_most_twice_as_long_as_the_one_before():
+    """Of a drive that would go too far in a step, whatever the rows are: few steps are refused."""
+    path = path_of(rod('position: "2*t"', every=1.0))
+    reach, asked = path.reached, []
+
+    def reached(place, t, within=0.0):
+        asked.append((place.t, t))
+        return reach(place, t, within)
+
+    path.reached = reached
+    list(path.run())
+    kept = {begun: to for begun, to in asked}  # the last one asked from a place was taken
+    first = {}
+    for begun, to in asked:
+        first.setdefault(begun, to)
+    steps = [(to - begun, first[to] - to) for begun, to in kept.items() if to in first]
+    assert len(steps) > 20
+    assert all(ahead <= 2.001 * long for long, ahead in steps)
+
+
 @pytest.mark.parametrize("off, found", [(1.5, True), (3.0, False)])
 def test_a_place_further_off_than_the_step_is_not_inside_it(off, found):
     """What channels do is looked at between two places: not on a branch three steps away."""
