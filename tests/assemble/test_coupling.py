@@ -11,6 +11,8 @@ from trsim.elements.scene import scene
 from trsim.scenario.load import loads
 from trsim.solve.methods.ggl_tables import colours
 
+from ..runs import built
+
 EVERYTHING = """
 planar: {planar}
 gravity: [0, -9.81, 0]
@@ -96,3 +98,17 @@ def test_columns_of_one_colour_act_on_different_nodes():
     for one in sets:
         rows = [row for node in one for row in near[node] | {node}]
         assert len(rows) == len(set(rows))
+
+
+def test_of_a_bar_nodes_are_alone_on_which_only_its_own_forces_act():
+    """Or a pin right at the node, along the axes of the world; not those of a clamp."""
+    mechanism = built("""
+bodies:
+  bar: {type: ancf_cable, start: [0, 0, 0], end: [1, 0, 0], section: {diameter: 20 mm},
+        elements: 3, youngs_modulus: 2e11, density: 7800}
+joints:
+  clamp: {type: fixed, bodies: [ground, bar], at: [0, 0, 0]}
+  pin: {type: revolute, bodies: [ground, bar], at: [1, 0, 0]}
+solver: {end: 1}
+""")
+    assert nodes(mechanism).alone == {1, 2, 3}

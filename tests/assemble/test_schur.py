@@ -1,9 +1,12 @@
 """S = J M^-1 J^T and its factors, against dense matrices; what a chain costs."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from benchmarks.problems import bending_chain, windows
+from trsim.assemble import schur
 from trsim.assemble.equations import derivative
 from trsim.assemble.pattern import pattern
 from trsim.assemble.reduce import jacobian
@@ -98,3 +101,20 @@ def test_a_chain_is_eliminated_from_both_ends():
     made = pattern(frames(6), 7)
     joints = made["row"][made["column_start"][:-1]] // 3
     assert joints[::3].tolist() == [0, 5, 1, 4, 2, 3]
+
+
+@pytest.mark.parametrize("d, row, expected", [
+    (6, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], 14.0 + 77.0 / 4.0),
+    (6, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0], 1.0 / 4.0),
+    (6, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], 1.0),
+    (3, [1.0, 2.0, 4.0], 5.0 + 16.0 / 4.0),
+])  # fmt: skip
+def test_rows_against_each_other_count_turns_at_the_size(monkeypatch, d, row, expected):
+    """Of a row on a body: J J^T, a turn as far as it moves a place at the size, 2 m."""
+    monkeypatch.setattr(schur, "clear", schur.clear.python)
+    s = SimpleNamespace(
+        B=np.array([row]), value=np.ones(1), through=np.ones(1), size=2.0, n_r=2, n=2, d=d,
+        hub=np.array([-1, -1]), frame_start=np.array([0, 0, 1]), entry=np.array([0]),
+    )  # fmt: skip
+    schur.plain_rows.python(s)
+    assert s.value[0] == pytest.approx(expected)

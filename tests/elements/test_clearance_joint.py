@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trsim.assemble.outputs import measured
 from trsim.elements.contract import FLIGHT, PHASE
 from trsim.errors import ScenarioError
 
@@ -152,3 +153,23 @@ def test_bad_input_is_refused_with_its_place(old, new, what):
         built(TWO_BODIES + text.replace(old, new))
     assert what in str(caught.value)
     assert caught.value.path[:2] in (("joints", "pin"), ("contact_laws", "law"))
+
+
+@pytest.mark.parametrize("friction", ["none", "modified"])
+def test_what_is_recorded_is_what_acts(friction):
+    """Forces as the journal feels them, and its place in the bearing."""
+    b = pressed(4, friction=friction)
+    w, columns = b.scene(), {c.name: c.start for c in b.mechanism.columns}
+    measured(w, b.t, b.state(), 0.0, 0.0)
+    told = {c: w.out[at] for name, at in columns.items() for c in [name.removeprefix("pin.")]}
+    d, _ = offset(b)
+    n = d / np.linalg.norm(d)
+    force = w.out[columns["pin.force"] : columns["pin.force"] + 3]
+    assert force == pytest.approx(w.F[2, :3], rel=1e-9)
+    across = np.linalg.norm(force - (force @ n) * n)
+    assert told["normal_force"] == pytest.approx(abs(force @ n), rel=1e-9)
+    assert abs(told["friction_force"]) == pytest.approx(across, rel=1e-9, abs=1e-9)
+    assert told["contact_force"] == pytest.approx(np.linalg.norm(force), rel=1e-9)
+    assert told["penetration"] == pytest.approx(0.01, rel=1e-6)
+    place = np.hypot(told["eccentricity_x"], told["eccentricity_y"])
+    assert place == pytest.approx(np.linalg.norm(d), rel=1e-9)

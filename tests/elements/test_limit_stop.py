@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trsim.assemble.outputs import measured
 from trsim.errors import ScenarioError
 
 from ..runs import built
@@ -144,3 +145,17 @@ def test_wall_and_point_of_one_body_are_refused():
         with pytest.raises(ScenarioError) as caught:
             built(TWO_BODIES + text)
         assert caught.value.path[:2] == ("forces", "stop")
+
+
+@pytest.mark.parametrize("kind, side", KINDS)
+def test_what_is_recorded_is_what_acts(kind, side):
+    """The force, or torque, on the second body and how far it is pressed in."""
+    b = pressed(kind, 2 * RAMP, side=side)
+    closing(b, kind, 0.1, side)
+    w, columns = b.scene(), {c.name: c.start for c in b.mechanism.columns}
+    measured(w, b.t, b.state(), 0.0, 0.0)
+    acts = w.F[2, 3:] if kind == "revolute" else w.F[2, :3]
+    start = columns["stop.force"]
+    assert w.out[start : start + 3] == pytest.approx(acts, rel=1e-9, abs=1e-9)
+    assert w.out[columns["stop.normal_force"]] == pytest.approx(np.linalg.norm(acts), rel=1e-9)
+    assert w.out[columns["stop.penetration"]] == pytest.approx(2 * RAMP, rel=1e-6)

@@ -1,9 +1,12 @@
 """Section: what a body carries at a station is what a `fixed` joint there would carry."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from trsim import elements
+from trsim.elements.section import Part, said
 from trsim.errors import TrsimError
 
 from ..runs import built, run
@@ -395,3 +398,10 @@ solver: {end: 0.1}
     r = run(text)  # world z is y of the instance: the closed form above, less the push of 9 N
     assert r["one_root.force"][-1] == pytest.approx([20 - 9, 0, 0], abs=1e-12)
     assert r["one_root.moment"][-1] == pytest.approx([0, 7 + 9 * 0.15, -2], abs=1e-12)
+
+
+def test_the_centre_of_what_is_cut_is_told_with_its_signs():
+    """What is next to nothing beside the others is rounding, on whichever side it lies."""
+    part = Part(2.0, (-0.25, 1e-20, -1e-20), (), True, "given")
+    told = said(SimpleNamespace(body="rod"), part, [])
+    assert "centre at [-0.25, 0, 0] m, given" in told and "acted on by nothing" in told

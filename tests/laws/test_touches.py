@@ -130,3 +130,12 @@ def test_a_flank_reaches_to_the_corner():
     one, other = np.array([[cos(half), sin(half)], [-cos(half), sin(half)]])  # normals of flanks
     place = np.linalg.solve([one, other], [0.93 * r, 0.999 * r])
     assert sorted(depths(got, [place], r)[0]) == pytest.approx([0.001 * r, 0.07 * r], abs=1e-12)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_touches_are_as_many_in_any_unit(size):
+    half, r = 0.5, 0.05
+    got = touches(vee(half, long=size), False, 1, r * size)
+    assert len(got) == 2
+    depth = depths(got, [[0.0, r * size / sin(half)]], r * size)
+    assert depth == pytest.approx(0.0, abs=1e-9 * size)

@@ -53,4 +53,61 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
         "jitter(s, r, b, setting, b.K[F], b.K[F + 1])",
         "-",
     ): "scratch: `guess` fills the rows of W anew before any step reads them",
+    ("trsim/laws/corners.py", "code, y = POW, ((2.0, 2.0), (0.0, 0.0))", "1.0"): (
+        "the rate of an exponent is not read where that is a whole number"
+    ),
+    (
+        "trsim/elements/bend.py",
+        "STRAIGHT = 1e-10  "
+        "# sine of a bend below which rounding alone says about which axis it bends",
+        "2e-10",
+    ): "rounding of places is larger than a bend that is in between, and so is what it turns by",
+    (
+        "trsim/elements/joint.py",
+        "along = sum(p * q for p, q in zip(x, a, strict=True))",
+        "False",
+    ): "both are directions of three numbers",
+    (
+        "trsim/laws/profiles.py",
+        "starts, ways = (np.array(c) for c in zip(*map(beginning, pieces), strict=True))",
+        "False",
+    ): "every piece has one place and one tangent",
+    (
+        "trsim/elements/sprung.py",
+        "low = min((y for x, y in zip(elastic.x, elastic.y, strict=True) if x >= 0.0), "
+        "default=0.0)",
+        "1.0",
+    ): "what stands for a table without such points is asked only whether it is below zero",
+    ("trsim/laws/contact.py", "for k in range(3, 20):", "21"): (
+        "the term more is 1e-24 of the sum where the series is used, x <= 1/2"
+    ),
+    (
+        "trsim/assemble/rubbing.py",
+        "SETTLED = 1e-12  # the same, where it gets no less",
+        "2e-12",
+    ): "ends the same contraction as rounding has stopped it, with forces alike in 11 digits",
+    ("trsim/assemble/shaky.py", "if len(forms) == 1:", "0"): (
+        "of one form there is one direction, of length 1 after every step; the turns end with none"
+    ),
+    ("trsim/assemble/linear.py", "change, size = 0.0, 0.0", "1.0"): (
+        "refines to the end what is refined enough: what follows is below rounding"
+    ),
+    (
+        "trsim/solve/path/between.py",
+        "ROUNDING = 1e-13  # of the largest of its kind: differences of places in balance",
+        "2e-13",
+    ): "leaves out extremes that are beyond what is known by less than balances are off",
+    ("trsim/solve/path/place.py", "IN_RAMP = 1e-6  # the same of sliding, of its ramp", "2e-06"): (
+        "a central difference of a law that is straight over a million times the step"
+    ),
+    (
+        "trsim/solve/diagnose/swings.py",
+        "sound = np.abs(value[np.isfinite(value) & (np.abs(value) < 1e299)])",
+        "2e+299",
+    ): "peaks are 1e300 where nothing was looked at; no run gets as far as 1e299",
+    (
+        "trsim/solve/diagnose/doubts.py",
+        'given = numbers.get("work_of_projection_relative", 0.0)',
+        "1.0",
+    ): "told only where too much was given, which a run without the number has not",
 }

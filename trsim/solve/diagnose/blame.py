@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
-from trsim.assemble.features import HELD_FROM, HELD_TO, SENSED
+from trsim.assemble.features import HELD_FROM, HELD_TO, OFFSET, SENSED
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import Pair
@@ -107,11 +107,12 @@ def on_a_jump(scenario: Any, mechanism: Mechanism, y: Array) -> str:
 
 def on_a_corner(mechanism: Mechanism, w: Any) -> str:
     """Which function is left free on a corner, in words; empty where none is."""
-    for function, row in zip(mechanism.functions, w.feature, strict=True):
+    for row in w.feature:  # of those that have corners
         places = w.held[row[HELD_FROM] : row[HELD_TO]]
         if row[SENSED] and np.any(w.tab[places] == FREE):
+            name = next((f.name for f in mechanism.functions if f.offset == row[OFFSET]), "a load")
             return (
-                f"{function.name}: what it depends on rests at a corner; where it jumps there, as "
+                f"{name}: what it depends on rests at a corner; where it jumps there, as "
                 "sign, floor and comparisons do, what is held by less than the jump is driven back "
                 "from both sides, in ever shorter steps: let it rise in a short way, as "
                 "step(x, x0, f0, x1, f1) does"
