@@ -31,8 +31,8 @@ TOLERANCES = ("1e-2", "1e-3", "1e-4", "1e-6", "5e-7")
 SELDOM = "output: {every: 0.05}"
 # all that branches are told by: extremes of forces, which are chance here, are sought for long
 MOTION = "output.channels=['*.position', '*.angular_velocity']"
-# past four such places: runs that change their branch do so at one of the first
-SHORTER = "solver.end=6"
+# past two such places, or four: runs that change their branch do so at one of the first
+SHORTER = f"solver.end={size(3, 6)}"
 SPACES = {"plane": ORDINARY, "tilted": TILTED}
 
 
