@@ -191,7 +191,7 @@ def test_a_motion_that_lost_its_speed_is_not_called_right():
     found = 0
     for first in np.geomspace(1e-3, 1.0, 12):
         ways = ("solver.method=radau", "solver.tolerance=1.1e-6", f"solver.first_step={first}")
-        r = run(made, *sets, *ways, fails=None)
+        r = run(made, *sets, *ways, SHORTER, fails=None)
         said = list(doubts(r.scenario, r.mechanism, r.outcome))
         if any("bringing" in x or "another branch" in x for x in said):
             found += any("are chance" in x for x in said)
