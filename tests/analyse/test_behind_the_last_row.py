@@ -1,5 +1,7 @@
 """A run ends where it came to: what is located behind its last output row counts."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -42,19 +44,31 @@ def made(folder, every, *sets):
 
 
 @pytest.fixture(scope="module")
-def fine(tmp_path_factory):
-    return made(tmp_path_factory.mktemp("fine"), "1 ms")
+def by_rows(tmp_path_factory):
+    """The run with rows so far apart, made once."""
+    return cache(lambda every: made(tmp_path_factory.mktemp("rows"), every))
+
+
+@pytest.fixture(scope="module")
+def fine(by_rows):
+    return by_rows("1 ms")
+
+
+@pytest.fixture(scope="module")
+def told(fine):
+    """What the run with the finest rows tells, found once for each word."""
+    return cache(lambda word: scalar(fine, word))
 
 
 @pytest.mark.parametrize("window", ["", "@0.05..", "@..0.95", "@0.7..0.99", "@0.2..7"])
 @pytest.mark.parametrize("every", ["3 ms", "300 ms", "600 ms"])
-def test_rows_have_no_influence_on_what_is_located(every, window, fine, tmp_path):
+def test_rows_have_no_influence_on_what_is_located(every, window, by_rows, told):
     """With 600 ms the last two stretches have no row in them, or no row at their end."""
-    run = made(tmp_path, every)
+    run = by_rows(every)
     assert run.time[-1] < 1.0 == run.reached
     assert {word.partition(":")[0] for word in WORDS} == set(LOCATED)
     for word in WORDS:
-        assert scalar(run, word + window) == scalar(fine, word + window), word
+        assert scalar(run, word + window) == told(word + window), word
 
 
 def test_the_numbers_are_those_that_show_tells(fine):
@@ -73,8 +87,8 @@ def test_a_run_that_ends_early(status, tmp_path):
         assert scalar(runs[1], word) == scalar(runs[0], word), word
 
 
-def test_words_about_rows_stay_about_rows(tmp_path):
-    run = made(tmp_path, "600 ms")
+def test_words_about_rows_stay_about_rows(by_rows):
+    run = by_rows("600 ms")
     x = run.channel("x")
     assert scalar(run, "mean:x")[0] == np.mean(x)
     assert scalar(run, "final:x")[0] == x[-1]
@@ -86,18 +100,18 @@ def test_words_about_rows_stay_about_rows(tmp_path):
         scalar(run, "onsets:stop@1.5..2")
 
 
-def test_what_is_recovered_came_as_far_as_its_last_touch(fine, tmp_path):
-    part = made(tmp_path, "600 ms").path
+def test_what_is_recovered_came_as_far_as_its_last_touch(by_rows, told, tmp_path):
+    part = by_rows("600 ms").path
     recover(part, tmp_path / "r.h5")
     run = read(tmp_path / "r.h5")
     assert run.summary["time"] == run.reached == 1.0  # the last point of `beat`
     for word in WORDS:
-        assert scalar(run, word) == scalar(fine, word), word
+        assert scalar(run, word) == told(word), word
 
 
-def test_a_contact_is_drawn_to_the_end_of_the_run(tmp_path):
+def test_a_contact_is_drawn_to_the_end_of_the_run(by_rows):
     """A last row in the middle of a contact is no zero of its force."""
-    run = made(tmp_path, "600 ms")
+    run = by_rows("600 ms")
     steps, touches = run.steps("stop")["time"], run.events.time[run.events.element == "stop"]
     time, _ = contact_history(compared([run])[0], "stop")
     assert time[-1] == 1.0
