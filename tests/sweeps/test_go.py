@@ -246,14 +246,14 @@ def test_a_foreign_index(copy, scenario):
 
 
 def test_a_folder_with_figures_of_a_run(scenario, tmp_path):
-    """What `report` of a run makes has the name that a sweep of its scenario has by itself."""
+    """A sweep takes the folder of `report` (tests/cli/test_sweep.py), not others' pictures."""
     folder = tmp_path / "play_0.3mm"
     folder.mkdir()
-    (folder / "x.png").write_bytes(b"")
     (tmp_path / "play_0.3mm.h5").write_bytes(b"")
-    with pytest.raises(UsageError) as caught:
+    (folder / "x.png").write_bytes(b"\x89PNG\r\n\x1a\nmine")
+    with pytest.raises(UsageError, match="a folder of other files, not of a sweep"):
         made(scenario, folder)
-    assert "figures of" in caught.value.hint and "play_0.3mm.h5" in caught.value.hint
+    assert [path.name for path in folder.iterdir()] == ["x.png"]
 
 
 def test_folders_of_others(scenario, tmp_path):
