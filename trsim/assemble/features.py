@@ -83,12 +83,15 @@ call_hold = caller(HOLD)
 
 @internal
 def passed(s, n, t):
-    """How many instants of feature n lie at or before t; 0 where it is not in force."""
+    """How many instants of feature n lie at or before t; 0 where it is not in force.
+
+    The end of the run is none of them: what follows a corner there is not run.
+    """
     first, since = s.feature[n, FIRST], began(s, s.feature[n, DRIVE], s.feature[n, OFFSET])
-    low, high = first, s.feature[n, BEHIND]
+    low, high = first, s.feature[n, BEHIND] - 1
     if since < 0.0:
         return 0
-    reached = t - since + SAME * s.instant[high - 1]
+    reached = t - since + SAME * s.instant[high]
     while low < high:
         middle = (low + high) // 2
         if s.instant[middle] <= reached:
