@@ -27,7 +27,8 @@ Array = NDArray[np.float64]
 
 BALANCED = 1e-11  # of the largest force
 ROUNDING = 1e-15  # of the mechanism's size: a shorter step cannot be told from none
-STEPS = 200
+STEPS = 200  # beside those that are cut short
+FAR = 600  # cut short: a rod of the length of the mechanism goes round about twice
 STALLED = 1e-3  # of the force: a smaller change, step after step, is none
 PATIENCE = 30  # steps without a change, and those that cross the widest clearance
 DEPENDENT = 1e-10  # relative size of a row that is not independent
@@ -123,8 +124,9 @@ def equilibrium(
     patience = PATIENCE + 2.0 * max(gaps, default=0.0) / reach
     push, scale, load = 0.0, 1e-300, 1e-300
     changed, before = 0, 0.0  # the step at which the force last changed, and to what
+    cut = 0  # steps that were cut short
     F, J, Z = balance(model, y, free, mass)
-    for count in range(STEPS):
+    for count in range(STEPS + FAR):
         if Z.shape[1] == 0:
             return y, 0.0
         lam: Array = np.zeros(0)
@@ -145,7 +147,7 @@ def equilibrium(
             push, load = max(abs(values[0]), size / reach), acting
         if abs(size - before) > STALLED * before:
             changed, before = count, size
-        if count - changed > patience:
+        if count - changed > patience or count - cut >= STEPS:
             break
         # Newton where the stiffness is positive, downhill where it is not
         curvature = np.maximum(np.abs(values), 1e-12 * np.abs(values).max()) + push
@@ -157,6 +159,7 @@ def equilibrium(
             judge(mechanism, values, Z @ vectors, max(load, acting), model, rigid)
             return y, left
         limit = min(1.0, reach / max(longest, turned, 1e-300))
+        cut += int(limit < 1.0)
         y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))
         # against the motions allowed there: the old ones would see the constraints' forces
         there = balance(model, y_new, free, mass)
