@@ -18,6 +18,7 @@ from trsim.errors import ScenarioError, some
 from trsim.kernels.signatures import A1, A2, i8, void
 from trsim.laws.functions import BY_TIME, EXPRESSION, HEAD, N_IN, N_OP, WIDTH, hold, motion
 from trsim.laws.operations import ATAN2, COS, DIV, EXP, LOG, POW, SIN, SQRT, TAN
+from trsim.scenario.methods import METHODS
 
 Array = NDArray[np.float64]
 
@@ -68,16 +69,20 @@ def jumps_of(tab: Array, offset: int, instants: list[float], by_velocity: bool) 
     instants: with 0 in front and the end of the run behind.
     """
     jumps, out, none = np.zeros((len(instants), 2)), np.zeros(4), np.zeros((1, 2))
-    rates = np.zeros(len(instants))
     middle = 0.5 * (np.array(instants[1:]) + np.array(instants[:-1]))
+    rates = np.zeros(2 * len(instants) - 1)  # at the instants and between: a motion may rest at all
+    mine = [0, 2] if by_velocity else [1, 3]
+    for k, t in enumerate(middle):
+        sides(tab, offset, np.array([t, t, t]), none, out)
+        rates[len(instants) + k] = abs(out[mine[0]])
     for k in range(1, len(instants) - 1):
         times = np.array([middle[k - 1], instants[k], middle[k]])
         sides(tab, offset, times, none, out)
         if by_velocity:
-            jumps[k, 1], rates[k] = out[2] - out[0], max(abs(out[0]), abs(out[2]))
+            jumps[k, 1] = out[2] - out[0]
         else:
             jumps[k] = out[2:] - out[:2]
-            rates[k] = max(abs(out[1]), abs(out[3]))
+        rates[k] = np.abs(out[mine]).max()
     jumps[np.abs(jumps[:, 1]) <= SUDDEN * np.max(rates, initial=0.0), 1] = 0.0
     return jumps
 
@@ -130,7 +135,8 @@ def steep(at: Any, instances: list[Any]) -> int:
 def notes(at: Any, instance: Any, times: list[float], jumps: Array, unit: str) -> Iterator[str]:
     """What is said of the velocity jumps of a motion."""
     when = np.flatnonzero(jumps[:, 1])
-    if len(when) == 0 or instance.row.is_force:
+    still = METHODS[at.scenario.solver.method].rests  # which knows no impulse
+    if len(when) == 0 or instance.row.is_force or still:
         return
     place = at.scenario.place(("drives", instance.name))
     line = f"{place.show()}: " if place else ""

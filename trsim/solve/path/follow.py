@@ -24,14 +24,14 @@ from trsim.errors import ModelError
 from trsim.solve.march import record as rec
 from trsim.solve.march.features import next_time
 from trsim.solve.outcome import Block, Outcome, new_record, settings, statistics
-from trsim.solve.path.balance import travel
 from trsim.solve.path.begin import begin, check
 from trsim.solve.path.between import Between
 from trsim.solve.path.changes import RUB, Change, Looks, bottoms, stability
 from trsim.solve.path.fold import fold
+from trsim.solve.path.headings import anchored, brief_step, directed, way
 from trsim.solve.path.let_go import Held, kept, why
 from trsim.solve.path.log import Log
-from trsim.solve.path.place import RAMP, SLOW, Equations, Place
+from trsim.solve.path.place import Equations, Place
 from trsim.solve.path.results import APART, Results, slope
 
 Array = NDArray[np.float64]
@@ -42,10 +42,6 @@ BESIDE = 1e-6  # of the mechanism's size: the same, however long the step is
 SHORTEST = 1e-12  # of the path: a step
 SAME = 1e-13  # of the path: where a change is, and whether it has been reached
 STEADY = 0.2  # of the time between rows: places that are nearer do not tell what inertia would do
-FIRST = 1e-4  # of the time between rows: how far ahead the direction of the start is taken
-SURE = 100.0  # times what full sliding takes, or further
-FASTER = 1e4  # times the way: what slides that much slower than the rest slides in full, too
-MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
 FULL = 1.0 - 1e-6  # of the largest friction there can be: less is no full sliding
 SEEN = 0.01  # of the path: in that time what slides goes further than full sliding takes
 PARTS = 8  # parts of a step in which channels that events watch are looked at
@@ -83,6 +79,7 @@ class Path:
         self.before: Place | None = None  # behind the place that is known last, on a smooth piece
         self.next_row, self.steps, self.rejected = 1, 0, 0
         self.lowest = (np.inf, 0.0)
+        self.behind = False  # whether something that rubs has a corner here
         self.longest = float(scenario.solver.max_step or self.end)
 
     # --- the way -------------------------------------------------------------------------------
@@ -92,10 +89,16 @@ class Path:
         place = self.first()
         h, again, last = self.every, 0, -1.0
         while not self.log.due and place.t < self.end * (1.0 - SAME):
-            to = self.until(place.t, h)
+            brief, self.behind = (
+                brief_step(self.eq, place, self.every) if self.behind else 0.0,
+                False,
+            )
+            to = self.until(place.t, brief or h)
             trial = self.reached(place, to)
             if trial is None or self.looks.passed_over(place, trial):
                 self.rejected += 1
+                if brief:
+                    continue
                 h = 0.5 * (to - place.t)
                 if h < SHORTEST * self.end:
                     self.stop(place)
@@ -109,12 +112,15 @@ class Path:
             self.steps += 1
             long = trial.t - place.t
             corner = self.at_corner(place.t, trial.t)
-            self.accept(place, trial, smooth=not changes and not corner)
+            self.accept(place, trial, smooth=not (changes or corner or brief))
             place = trial
+            if brief and not (changes or corner):
+                self.goes_on(place)
             if changes or corner:
                 again = again + 1 if place.t - last <= SAME * self.end else 0
                 last = place.t
                 place = self.beyond(place, changes)
+                self.behind = self.eq.rubs
                 if self.log.due:
                     break
                 if place is None or again > AGAIN or self.log.reason:
@@ -139,7 +145,7 @@ class Path:
         place = eq.place(self.t0, *found) if found is not None else None
         if place is None:
             raise self.nowhere()
-        place = self.directed(place)
+        place = directed(self.eq, place, self.every)
         self.looks.hold_all(place)
         if not eq.rubs:  # on the pieces ahead
             place = eq.place(self.t0, place.y, place.lam) or place
@@ -160,30 +166,6 @@ class Path:
             "does something hold every load, and every body?  `trsim statics` tells more",
             ("solver", "method"),
         )
-
-    def directed(self, place: Place) -> Place:
-        """The start with friction against the way it is going to go."""
-        eq = self.eq
-        if not eq.rubs:
-            return place
-        first, h = slice(eq.work.n_q, eq.work.n_q + eq.n), FIRST * self.every
-        while True:
-            there = eq.at_time(place.y, self.t0, self.t0 + h)
-            found = eq.solved(self.t0 + h, there, place.lam, None)
-            if found is None:
-                return place
-            ahead = found[0].copy()
-            travel(eq.work, place.y, ahead, SLOW)
-            if h >= self.every or np.abs(ahead[first] / eq.unit).max() > SLOW * SURE * RAMP:
-                break
-            h *= 10.0
-        y = place.y.copy()
-        y[first] = FASTER * ahead[first]
-        eq.frozen = True
-        again = eq.solved(self.t0, y, found[1], None)
-        at_start = eq.place(self.t0, *again) if again is not None else None
-        eq.frozen = False
-        return at_start or place
 
     def until(self, t: float, h: float) -> float:
         """Where a step of h ends, at the latest."""
@@ -206,10 +188,10 @@ class Path:
         found = eq.solved(t, y, place.lam + h * place.lam_rate, place.inverse)
         if found is None:
             return None
-        way, off = self.way(place.y, found[0]), self.way(y, found[0])
+        far, off = self.way(place.y, found[0]), self.way(y, found[0])
         if within:
-            return eq.place(t, *found) if way <= within else None
-        if way > FAR or off > max(ASTRAY * way, BESIDE):
+            return eq.place(t, *found) if far <= within else None
+        if far > FAR or off > max(ASTRAY * far, BESIDE):
             return None
         there = eq.place(t, *found)
         if there is None or self.looks.hidden(place, there):
@@ -245,10 +227,7 @@ class Path:
 
     def way(self, y: Array, y1: Array) -> float:
         """The furthest way of a body, rad or of the mechanism's size."""
-        eq, there = self.eq, y1.copy()
-        travel(eq.work, y, there, 1.0)
-        ways = there[eq.work.n_q : eq.work.n_q + eq.n] / eq.unit
-        return float(np.abs(ways).max(initial=0.0))
+        return way(self.eq, y, y1)
 
     def changed(self, place: Place) -> list[Change]:
         out = self.results.out(place, 0.0 * place.v) if self.hears else None
@@ -313,7 +292,8 @@ class Path:
         if self.log.letting_go:
             return self.let_go(place)
         if all(change.kind == RUB for change in changes) and changes:
-            eq.anchor, self.results.turned = place.y.copy(), True
+            anchored(self.eq, place, self.every, 0.0)
+            self.results.turned = True
             return place
         looks.hold_all(place)
         found = eq.solved(place.t, place.y, place.lam, None)
@@ -327,7 +307,7 @@ class Path:
         there = eq.place(place.t, *found)
         if there is not None:
             self.judge(there)
-            self.anchored(there)
+            anchored(self.eq, there, self.every)
         return there
 
     def let_go(self, place: Place) -> Place:
@@ -356,7 +336,7 @@ class Path:
             log.falls.append((place.t, f"{what} the mechanism's size"))
             self.results.jumped = True
         self.results.go_on_with(eq, there)
-        self.anchored(there)
+        anchored(self.eq, there, self.every)
         return there
 
     def ends_without(self, there: Place | None, jump: float) -> str:
@@ -392,13 +372,12 @@ class Path:
             self.between.end()
             self.before = None
         else:
-            self.judge(trial)
-            self.anchored(trial)
+            self.goes_on(trial)
 
-    def anchored(self, place: Place) -> None:
-        """Take directions from here on, unless that would be from next to nothing."""
-        if self.way(self.eq.anchor, place.y) > MOVED:
-            self.eq.anchor = place.y.copy()
+    def goes_on(self, place: Place) -> None:
+        """Judge a place, and take directions from it."""
+        self.judge(place)
+        anchored(self.eq, place, self.every)
 
     def kept(self, place: Place, after: Place | None, smooth: bool = False) -> None:
         """Keep a place; smooth: the way from there to the place after has no corner."""

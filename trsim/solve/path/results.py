@@ -196,8 +196,8 @@ class Results:
             return
         n, w = self.eq.n, self.w
         force = np.zeros(n + self.eq.m)
-        y = place.y.copy()
-        y[w.n_q : w.n_q + w.n_v] = place.v
+        y, speeds = place.y.copy(), slice(w.n_q, w.n_q + w.n_v)
+        y[speeds] += place.v  # what rests there rubs as on its way to the place
         inertia_forces(w, y, a, force)
         for f, lacking in zip(w.light.tolist(), w.lacking, strict=True):
             self.take_back(force, y, a, (f, lacking))
