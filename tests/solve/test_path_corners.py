@@ -122,3 +122,35 @@ def test_a_motion_that_rests_at_all_its_corners_has_no_jumps():
     text = SLIDE.replace("MOTION", 'position: "0.04*smoothstep(t/0.95)"').replace("LAW", COULOMB)
     r = run(text.replace("PLANAR", "true").replace("method: static_path, ", ""))
     assert not [x for x in r.mechanism.notes if "jumps" in x]
+
+
+CAM = """
+gravity: [0, -10, 0]
+bodies:
+  bar: {mass: 1, inertia: 1e-3, at: [0, 0]}
+  pin: {mass: 1, inertia: 1e-6, at: [0, 0.0025]}
+joints:
+  g: {type: prismatic, bodies: [ground, bar], axis: [1, 0, 0]}
+  v: {type: prismatic, bodies: [ground, pin], axis: [0, 1, 0]}
+drives: {d: {joint: g, position: "0.01*t"}}
+sensors: {x: {joint: g}}
+forces:
+  c: {type: surface_contact, surface: {body: bar, at: [0, 0], x_axis: [4, 3]},
+      ball: {body: pin, at: [0, 0.0025], radius: 2 mm}}
+contact_laws:
+  k: {normal: impact, stiffness: 1e8, exponent: 1.5, damping: 10, ramp: 0.01 mm,
+      friction: {law: modified_coulomb, coefficient: 0.1, v0: 0, v1: 1e-4}}
+events: {here: {when: x, value: AT, do: {record: true}}}
+solver: {method: static_path, end: 1 s}
+output: {every: 0.1}
+"""
+
+
+@pytest.mark.parametrize("beside", [0.0, 2e-12, 1e-11, 1e-9])
+def test_an_event_close_behind_a_row(beside):
+    """What slides has its full friction there, however short the way from the row."""
+    r = run(CAM.replace("AT", f"{0.005 + beside:.15g}"))
+    (line,) = r.recorded
+    speed = line[2 + r.place["pin.velocity"][0] + 1]
+    assert speed == pytest.approx(-0.0075, rel=1e-6)
+    assert not [x for x in said(r) if "inertia" in x]

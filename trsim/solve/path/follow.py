@@ -19,25 +19,38 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.switches import TIME
-from trsim.elements.scene import scene
 from trsim.errors import ModelError
 from trsim.solve.march import record as rec
 from trsim.solve.march.features import next_time
-from trsim.solve.outcome import Block, Outcome, new_record, settings, statistics
+from trsim.solve.outcome import Block, Outcome, settings
 from trsim.solve.path.begin import begin, check
 from trsim.solve.path.between import Between
 from trsim.solve.path.changes import RUB, Change, Looks, bottoms, stability
 from trsim.solve.path.fold import fold
-from trsim.solve.path.headings import anchored, brief_step, directed, way
+from trsim.solve.path.headings import (
+    CLOSE_AHEAD,
+    anchored,
+    bend,
+    brief_step,
+    came_by,
+    directed,
+    kinked,
+    second_order,
+    way,
+)
 from trsim.solve.path.let_go import Held, kept, why
 from trsim.solve.path.log import Log
 from trsim.solve.path.place import Equations, Place
 from trsim.solve.path.results import APART, Results, slope
+from trsim.solve.path.told import outcome
 
 Array = NDArray[np.float64]
 
 FAR = 0.05  # rad, or of the mechanism's size: what anything moves in a step at most
 ASTRAY = 0.5  # of what a step moves: how far from its tangent a place is found
+BENT = 1e-4  # of the largest force, of the size: what a smooth step may be off its rates by
+BENT_TURNING = 3e-4  # the same where friction turns, whose direction is that of the step
+PARTED, STILL = 3, 0.9  # steps halved for that to no effect, of what the first one was off by
 BESIDE = 1e-6  # of the mechanism's size: the same, however long the step is
 SHORTEST = 1e-12  # of the path: a step
 SAME = 1e-13  # of the path: where a change is, and whether it has been reached
@@ -55,7 +68,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Block, None, Outc
     clock = time.process_time()
     path = Path(scenario, mechanism, begin(scenario, mechanism))
     yield from path.run()
-    return path.outcome(time.process_time() - clock)
+    return outcome(path, time.process_time() - clock)
 
 
 class Path:
@@ -89,22 +102,11 @@ class Path:
         place = self.first()
         h, again, last = self.every, 0, -1.0
         while not self.log.due and place.t < self.end * (1.0 - SAME):
-            brief, self.behind = (
-                brief_step(self.eq, place, self.every) if self.behind else 0.0,
-                False,
-            )
-            to = self.until(place.t, brief or h)
-            trial = self.reached(place, to)
-            if trial is None or self.looks.passed_over(place, trial):
-                self.rejected += 1
-                if brief:
-                    continue
-                h = 0.5 * (to - place.t)
-                if h < SHORTEST * self.end:
-                    self.stop(place)
-                    break
-                continue
-            changes = self.changed(trial)
+            found = self.step(place, h)
+            if found is None:
+                self.stop(place)
+                break
+            trial, changes, h, brief = found
             if changes and trial.t - place.t > SAME * self.end:
                 trial, changes = self.narrowed(place, trial, changes)
             if self.looks.waiting and (inside := self.looked_inside(place, trial)):
@@ -132,6 +134,33 @@ class Path:
             self.kept(place, None)
             self.between.end()
         yield from self.block(0)
+
+    def step(self, place: Place, h: float) -> tuple[Place, list[Change], float, bool] | None:
+        """The end of the next step, of h or shorter, and what changes there; h as it became, and
+        whether it is a brief one behind a corner.  None where steps shrink to nothing."""
+        brief = brief_step(self.eq, place, self.every) if self.behind else 0.0
+        self.behind = False
+        bent: list[tuple[float, Place, list[Change], float]] = []
+        while True:
+            to = self.until(place.t, brief or h)
+            trial = self.reached(place, to)
+            if trial is not None and not self.looks.passed_over(place, trial):
+                changes = self.changed(trial)
+                off = 0.0 if brief or changes else bend(self.eq, place, trial)
+                if off <= (BENT_TURNING if self.eq.turning else BENT):
+                    return trial, changes, h, brief > 0.0
+                bent.append((off, trial, changes, h))
+                if len(bent) > PARTED and off > STILL * bent[0][0]:
+                    break
+            elif bent:
+                break
+            self.rejected += 1
+            h = h if brief else 0.5 * (to - place.t)
+            brief = 0.0
+            if h < SHORTEST * self.end:
+                return None
+        _, trial, changes, h = bent[0]  # forces jump where it begins, and no step tells more
+        return trial, changes, h, False
 
     def first(self) -> Place:
         """The place where it begins, with the directions in which it goes on."""
@@ -184,8 +213,20 @@ class Path:
 
         within: a way that is known to be long enough; then nothing else is asked."""
         eq, h = self.eq, t - place.t
-        y = eq.at_time(eq.moved(place.y, h * place.v), place.t, t)
-        found = eq.solved(t, y, place.lam + h * place.lam_rate, place.inverse)
+        y, lam = (
+            eq.at_time(eq.moved(place.y, h * place.v), place.t, t),
+            place.lam + h * place.lam_rate,
+        )
+        found = None
+        turns = eq.turning and place.came is not None and self.slides(place)
+        if turns:
+            eq.anchor, eq.close = second_order(eq, place, h), None
+        if eq.close is not None and self.way(place.y, y) < CLOSE_AHEAD:
+            far, eq.anchor, eq.close = eq.anchor, eq.close, None
+            found = eq.solved(t, y, lam, place.inverse)
+            eq.anchor = eq.anchor if found is not None else far
+        if found is None:
+            found = eq.solved(t, y, lam, place.inverse)
         if found is None:
             return None
         far, off = self.way(place.y, found[0]), self.way(y, found[0])
@@ -196,9 +237,10 @@ class Path:
         there = eq.place(t, *found)
         if there is None or self.looks.hidden(place, there):
             return None
-        if eq.turning and self.looks.all_slide(there) and self.is_full(there):
+        if eq.turning and not turns and self.slides(there):
             for _ in range(2 if eq.surfaces else 1):
                 there = eq.along_itself(there, SEEN * self.end)
+        there.came = came_by(eq, place, there)
         return there
 
     def inside(self, first: Place, last: Place, t: float) -> Place | None:
@@ -208,7 +250,7 @@ class Path:
         anchor = eq.anchor
         eq.anchor = anchor if last.anchor is None else last.anchor
         try:
-            if eq.turning and self.looks.all_slide(first) and self.is_full(first):
+            if eq.turning and self.slides(first):
                 return self.reached(first, t)
             y = eq.at_time(eq.moved(first.y, h * first.v), first.t, t)
             found = eq.solved(t, y, first.lam + h * first.lam_rate, first.inverse)
@@ -217,6 +259,10 @@ class Path:
         if found is None or self.way(y, found[0]) > max(ASTRAY * self.way(first.y, y), BESIDE):
             return None
         return replace(first, t=t, y=found[0], lam=found[1])
+
+    def slides(self, place: Place) -> bool:
+        """Whether all that rubs slides, in full."""
+        return self.looks.all_slide(place) and self.is_full(place)
 
     def is_full(self, place: Place) -> bool:
         """Whether friction on all surfaces is that of full sliding."""
@@ -292,7 +338,7 @@ class Path:
         if self.log.letting_go:
             return self.let_go(place)
         if all(change.kind == RUB for change in changes) and changes:
-            anchored(self.eq, place, self.every, 0.0)
+            anchored(self.eq, place, self.every, least=0.0)
             self.results.turned = True
             return place
         looks.hold_all(place)
@@ -372,12 +418,12 @@ class Path:
             self.between.end()
             self.before = None
         else:
-            self.goes_on(trial)
+            self.goes_on(trial, not kinked(self.eq, place, trial))
 
-    def goes_on(self, place: Place) -> None:
+    def goes_on(self, place: Place, smooth: bool = False) -> None:
         """Judge a place, and take directions from it."""
         self.judge(place)
-        anchored(self.eq, place, self.every)
+        anchored(self.eq, place, self.every, smooth)
 
     def kept(self, place: Place, after: Place | None, smooth: bool = False) -> None:
         """Keep a place; smooth: the way from there to the place after has no corner."""
@@ -389,7 +435,7 @@ class Path:
         if at_row:  # between rows a path may have a corner, or an end at which it has no speed
             steady = slope(self.before, place, after, STEADY * self.every)
             self.results.inertia(place, steady)
-        elif smooth and self.before is not None:
+        elif smooth and self.before is not None and after and not kinked(self.eq, place, after):
             self.results.inertia(place, slope(None, place, after, APART * self.every))
         self.results.touching(place, out, self.looks.closed)
         if at_row:
@@ -448,28 +494,3 @@ class Path:
         )  # fmt: skip
         kept.rows, kept.steps, kept.recorded = [], [], []
         self.log.events = []
-
-    def numbers(self) -> dict[str, float]:
-        """What statistics tell of it: its lowest eigenvalue, its largest ratio of inertia."""
-        found = {}
-        if np.isfinite(self.lowest[0]):
-            found["lowest_eigenvalue"], found["lowest_eigenvalue_time"] = self.lowest
-        if ratios := self.results.ratios():
-            _, ratio, when = max(ratios, key=lambda one: one[1])
-            found["inertia_ratio"], found["inertia_ratio_time"] = ratio, when
-        return found
-
-    def outcome(self, cpu: float) -> Outcome:
-        """How it ended, and what is told of it."""
-        work, kept = scene(self.mechanism.model), self.results
-        r = new_record(work, self.begun, (), 1)
-        r.steps, r.rejected, r.events = self.steps, self.rejected, self.log.count
-        r.t = kept.last.t if kept.last else 0.0
-        r.largest_energy, r.largest_residual = kept.largest_energy, kept.largest_residual
-        for k in range(rec.N_PEAK):
-            r.peak[k] = kept.peak[k]
-        numbers = statistics(r, work, self.begun, cpu)
-        numbers["evaluations"] = int(self.eq.work.status[1])
-        numbers |= self.numbers()
-        return Outcome(self.log.status, self.log.reason, float(r.t), numbers, kept.peak.T.copy(),
-                       r, self.begun, self.log.fired, said=tuple(self.log.said()))  # fmt: skip

@@ -17,6 +17,10 @@ SURE = 100.0  # times what full sliding takes, or further
 FASTER = 1e4  # times the way: what slides that much slower than the rest slides in full, too
 MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
 ONCE = 1.001  # times that way: what rested before has not gone further
+CLOSE_AHEAD = 10.0 * MOVED  # a place so near tells no direction
+KINK = 0.1  # of what the rates at both ends of a step make of it: off by more, and they jump inside
+LEAST = 1e-5  # of the size: a shorter step is not looked at for bends
+LOST = 1e-13  # of the size: ways that are rounding
 BRIEF = 1e-6  # of the size: the first step behind a corner
 
 
@@ -56,24 +60,46 @@ def directed(eq: Equations, place: Place, every: float) -> Place:
     return at_start or place
 
 
-def anchored(eq: Equations, place: Place, every: float, least: float = MOVED) -> None:
+def anchored(
+    eq: Equations, place: Place, every: float, smooth: bool = False, least: float = MOVED
+) -> None:
     """Take directions from here on, unless that would be from next to nothing.
 
     What came here and rests counts as having begun a little before, in whatever steps others go
-    on.
+    on.  smooth: so may all the rest, for a place so close ahead that it tells no direction.
     """
     came = ways(eq, eq.anchor, place.y)
     went = np.abs(came / eq.unit)
-    if went.max(initial=0.0) <= least:
+    most = went.max(initial=0.0)
+    if most <= least:
         return
-    eq.anchor = place.y.copy()
-    rests = np.abs(place.v / eq.unit) * every <= RAMP
-    if eq.rubs and np.any(rests & (went > RAMP)):
-        stops = rests & (went > ONCE * MOVED)
-        most = went[stops].max(initial=MOVED)
-        eq.anchor = eq.moved(
-            place.y, -np.where(rests, came, 0.0) * np.where(stops, MOVED / most, 1.0)
-        )
+    rests = (np.abs(place.v / eq.unit) * every <= RAMP) & (went > RAMP)
+    stops = rests & (went > ONCE * MOVED)
+    kept = np.where(rests, 1.0, 0.0)
+    kept[stops] = MOVED / went[stops].max(initial=MOVED)
+    eq.anchor, eq.close = place.y.copy(), None
+    if eq.rubs:
+        eq.anchor = eq.moved(place.y, -kept * came)
+        close = np.where(rests, kept, MOVED / most)
+        eq.close = eq.moved(place.y, -close * came) if smooth else None
+
+
+def came_by(eq: Equations, place: Place, there: Place) -> tuple[float, Array] | None:
+    """Time and way from a place to the next; None of a way that tells no direction."""
+    went = ways(eq, place.y, there.y)
+    return (there.t - place.t, went) if np.abs(went / eq.unit).max(initial=0.0) > MOVED else None
+
+
+def second_order(eq: Equations, place: Place, h: float) -> Array:
+    """Where the directions at the end of a step are taken from where friction turns: with ways d
+
+        v(t + h) ~ d(t, t + h) - r^2/(1 + 2 r) d(t - h/r, t)
+
+    the backward difference of second order, steps in the ratio r [HairerNorsettWanner1993, III.5].
+    """
+    before, came = place.came or (h, 0.0 * place.v)
+    r = h / before
+    return eq.moved(place.y, r * r / (1.0 + 2.0 * r) * came)
 
 
 def brief_step(eq: Equations, place: Place, every: float) -> float:
@@ -81,3 +107,24 @@ def brief_step(eq: Equations, place: Place, every: float) -> float:
     full; 0 where nothing moves."""
     speed = float(np.abs(place.v / eq.unit).max(initial=0.0))
     return BRIEF / speed if speed * every > BRIEF else 0.0
+
+
+def bend(eq: Equations, place: Place, trial: Place) -> float:
+    """How far a step is off what the rates at both its ends make of it, in its way, of the size,
+    and in the forces of joints and drives, of the largest: much where a touch has passed from one
+    piece of a shape to another inside, or something went up and down again."""
+    half, way = 0.5 * (trial.t - place.t), ways(eq, place.y, trial.y)
+    if np.abs(way / eq.unit).max(initial=0.0) <= LEAST:
+        return 0.0
+    off = np.abs(way - half * (place.v + trial.v)) / eq.unit
+    force = np.abs(trial.lam - place.lam - half * (place.lam_rate + trial.lam_rate))
+    force *= np.asarray(eq.work.row_unit)[: eq.m] / (eq.work.size * eq.load)
+    return float(max(off.max(initial=0.0), force.max(initial=0.0)))
+
+
+def kinked(eq: Equations, place: Place, after: Place) -> bool:
+    """Whether rates jump between two places, as where what stuck begins to slide."""
+    half = 0.5 * (after.t - place.t)
+    off = np.abs(ways(eq, place.y, after.y) - half * (place.v + after.v)) / eq.unit
+    told = half * (np.abs(place.v) + np.abs(after.v)) / eq.unit
+    return bool(np.any(off > KINK * told + LOST))

@@ -40,6 +40,7 @@ from trsim.solve.path.changes import WATCH, Change
 from trsim.solve.path.follow import BESIDE, Path
 from trsim.solve.path.place import Place
 from trsim.solve.path.relax import relaxed
+from trsim.solve.path.told import numbers
 from trsim.solve.rest import without_rates
 from trsim.statuses import Ended
 
@@ -94,7 +95,7 @@ class Walks:
         touches(path, work, r, self.located)
         r.h = first_step(self.scenario, r)
         self.said += (*path.of_begin(self.moving), *path.log.said())
-        self.numbers = stricter(self.numbers, path.numbers())
+        self.numbers = stricter(self.numbers, numbers(path))
         self.moving = False
         ended = (path.log.status, path.log.reason) if path.log.reason else None
         return rec.ACT if path.log.due else rec.DONE, ended

@@ -69,6 +69,7 @@ class Place:
     v: Array  # velocities along the path
     lam_rate: Array
     anchor: Array | None = None  # where directions were taken from
+    came: tuple[float, Array] | None = None  # time and way from the place before, on a smooth piece
 
 
 def sliding(mechanism: Mechanism) -> Any:
@@ -128,6 +129,7 @@ class Equations:
         self.unit = np.tile([w.size, w.size, 1.0] if w.d == 3 else [w.size] * 3 + [1.0] * 3,
                             w.n_r - 1)  # fmt: skip
         self.anchor = begun.y.copy()
+        self.close: Array | None = None  # the same for places close ahead, see headings.py
         # surfaces that slide in several ways at once, whose direction turns
         self.surfaces = rough_surfaces(mechanism, w)
         rubbed = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
