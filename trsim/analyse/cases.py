@@ -14,6 +14,7 @@ import numpy as np
 from trsim.analyse.outputs import scalar
 from trsim.errors import FileError, TrsimError, UsageError, listed
 from trsim.statuses import WELL
+from trsim.store.once import Once
 from trsim.store.read import Run
 
 
@@ -59,7 +60,7 @@ def answers(study: Any, questions: Mapping[str, Callable[[Run], Any]]) -> dict[s
 def _answered(case: Any, questions: Mapping[str, Callable[[Run], Any]]) -> Iterator[Any]:
     """Each question with its answer, or with the error that there is instead."""
     try:
-        run = case.run()
+        run = Once.of(case.run())
     except FileError as error:
         yield from ((key, error) for key in questions)
         return

@@ -1,7 +1,7 @@
 """A sweep as it stands in its folder, for whatever reads its runs."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 
 from trsim.errors import FileError
@@ -14,6 +14,7 @@ from trsim.sweeps.records import Place, Sizes, place, stored
 from trsim.sweeps.summary import kept
 
 MISSING = "missing"
+READ = 1000  # cases whose names and units are kept, 10 kB each
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,18 @@ class Case:
         if (at := self.kept) is not None:
             folder, sha = self.file.parent.parent, self.entry.content if self.entry else ""
             return kept(self.file, self.name, stored(folder, at, sha))
-        return read(self.file)
+        try:
+            found = self.file.stat()
+        except OSError:
+            return read(self.file)  # which says why
+        return _read(self.file, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns)
+
+
+@lru_cache(READ)
+def _read(file: Path, *_: int) -> Run:
+    """The file of a case, by what changes with it: a report asks several times for each, and to
+    look whether all of a file is sound takes longer than most of what it is asked."""
+    return read(file)
 
 
 @dataclass(frozen=True)
