@@ -42,7 +42,7 @@ def folder(tmp_path_factory):
     warm()
     (folder / "crank.yaml").write_text(small.SLIDER_CRANK)
     (folder / "many.yaml").write_text(small.SLIDER_CRANK + SWEEP)
-    small.copy(folder / "done.h5")
+    small.copy(folder / "done.h5", *small.FEW)
     scenario = loads(small.SLIDER_CRANK, LONGER)
     cut(folder / "dead.h5", scenario, assemble(scenario), 2)
     for name in {*NAMES} - by_python(folder):
@@ -185,14 +185,14 @@ OTHER_SETTINGS = {
 
 
 REPORT = [sys.executable, "-P", "-m", "trsim", "report", "done.h5"]
-ONE_FIGURE = ("--plot", "B.normal_force : stroke")
+ONE_FIGURE = ("--plot", "B.eccentricity_x : stroke")
 
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory):
     """Figures where no settings lie beside the run: all of its report, and one asked for."""
     folder = tmp_path_factory.mktemp("alone")
-    small.copy(folder / "done.h5")
+    small.copy(folder / "done.h5", *small.FEW)
     for name, asked in (("all", ()), ("one", ONE_FIGURE)):
         assert ended(folder, REPORT, *asked, "-o", name)[0] == 0
     return folder
@@ -205,7 +205,7 @@ def test_figures_do_not_depend_on_settings_of_the_folder(settings, alone, tmp_pa
     It would be read with the import: one figure shows that a bad one is not, all show it of a good
     one.
     """
-    small.copy(tmp_path / "done.h5")
+    small.copy(tmp_path / "done.h5", *small.FEW)
     if OTHER_SETTINGS[settings] is None:
         os.mkfifo(tmp_path / "matplotlibrc")
     else:
