@@ -1,7 +1,6 @@
 """A run that ended early goes on from its checkpoint: the result is that of an unbroken run."""
 
 import errno
-import io
 import json
 import os
 import re
@@ -9,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import sys
-from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
@@ -25,7 +23,7 @@ from trsim.assemble.instances import Column
 from trsim.errors import FileError
 from trsim.scenario.load import loads
 from trsim.solve import simulate as solver
-from trsim.store import checkpoint, describe, hdf5, peaks, resume
+from trsim.store import checkpoint, describe, hdf5, peaks
 from trsim.store.hdf5 import write
 from trsim.store.read import read, verify
 
@@ -52,20 +50,6 @@ def cut(path, scenario, mechanism, blocks, closed=False):
             patch.setattr(hdf5.Running, "finish", lambda run, *_: run.abandon())
         with pytest.raises(KeyboardInterrupt):
             write(path, scenario, mechanism, some(), hdf5.Around(every=1e9))
-
-
-@pytest.fixture
-def at_once(monkeypatch):
-    """The rows of a dead run are read without a process of its own, which takes half a second."""
-
-    @contextmanager
-    def sender(part, wanted):
-        rows = io.BytesIO()
-        resume.send(part, wanted, rows)
-        rows.seek(0)
-        yield rows
-
-    monkeypatch.setattr(resume, "sender", sender)
 
 
 def resumed(path, scenario, mechanism):
