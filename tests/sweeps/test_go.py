@@ -296,7 +296,7 @@ def test_cases_that_fail(scenario, tmp_path):
 # --- killed ----------------------------------------------------------------------------------
 
 SWEEP = [sys.executable, "-m", "trsim", "sweep"]
-KILLS = size(10, 20)
+KILLS = size(5, 20)
 FINE = (f"{B}=lin(0.2 mm, 0.5 mm, 6)", "solver.end=2 ms")
 
 
@@ -321,6 +321,13 @@ def alive(pids):
     ]
 
 
+def one_more(process, folder):
+    """Wait until a case more is stored than there were: others are at work then."""
+    before = len(entries(folder))
+    while len(entries(folder)) <= before and process.poll() is None:
+        time.sleep(0.002)
+
+
 def test_killed_at_any_time(scenario, tmp_path):
     """Parent or worker killed, the same command again: the same set; no orphans."""
     calm, stormy = tmp_path / "calm", tmp_path / "stormy"
@@ -331,15 +338,17 @@ def test_killed_at_any_time(scenario, tmp_path):
     )
     whole = time.monotonic() - began
     dice = random.Random(1)
-    kills = 0
-    while kills < KILLS:
+    for kill in range(KILLS):
         process = subprocess.Popen(
             [*SWEEP, *arguments, "-o", str(stormy)], cwd=ROOT, stdout=subprocess.DEVNULL
         )
-        time.sleep(dice.uniform(0.3, 1.0) * whole)
+        if kill % 5 == 3:  # while it begins, or its workers do
+            time.sleep(dice.uniform(0.1, 0.6) * whole)
+        else:
+            one_more(process, stormy)
+            time.sleep(dice.uniform(0.0, 0.1))
         workers = children(process.pid)
-        kills += 1
-        if kills % 2 and workers:
+        if kill % 2 == 0 and workers:
             os.kill(dice.choice(workers), signal.SIGKILL)
             assert process.wait(timeout=120) == 0  # one attempt more, and nothing else
             assert contents(stormy) == contents(calm)
