@@ -172,8 +172,9 @@ def picture(figure: Figure, target: Any) -> None:
     `savefig` would draw a figure with a layout twice, and throw the first picture away.
     """
     layout = figure.get_layout_engine()
-    given = matplotlib.rcParams["savefig.dpi"] != "figure"  # it is laid out for other dots then
-    if layout is not None and not given and not any(map(matplotlib.rcParams.get, LAYING)):
+    rc: Any = matplotlib.rcParams
+    given = rc["savefig.dpi"] != "figure"  # it is laid out for other dots then
+    if layout is not None and not given and not any(rc[key] for key in LAYING):
         layout.execute(figure)
         figure.set_layout_engine(None)
     figure.savefig(target, format="png", metadata=ABOUT["png"])
