@@ -36,6 +36,10 @@ poincare:
   journal: {when: B.eccentricity_x_rate, crosses: up, plot: [B.eccentricity_x, B.eccentricity_y]}
 """
 
+# of a run whose report has a figure of each kind, in place of one of each body and sensor
+FEW = ("output.channels=[stroke, crank.position, motor.force, B.contact_force, B.eccentricity_x, "
+       "B.eccentricity_y, energy.kinetic, energy.residual]",)  # fmt: skip
+
 
 def run(path: Path, *sets: str, text: str = SLIDER_CRANK) -> dict[str, Any]:
     """Simulate into a file; the summary."""

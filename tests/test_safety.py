@@ -72,7 +72,7 @@ def test_a_run_reaches_nothing(tmp_path, monkeypatch):
     (tmp_path / "crank.yaml").write_text(small.SLIDER_CRANK)
     commands = [
         ("check", "crank.yaml"),
-        ("run", "crank.yaml", "-q"),
+        ("run", "crank.yaml", "-q", "--set", *small.FEW),
         ("show", "runs/crank.h5"),
         ("report", "runs/crank.h5", "-o", "figures"),
         ("export", "runs/crank.h5", "--csv"),

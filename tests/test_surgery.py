@@ -160,7 +160,7 @@ def test_damaged_ledgers(tmp_path):
 def broken_off(tmp_path_factory):
     """The folder of a run that was broken off."""
     folder = tmp_path_factory.mktemp("broken_off")
-    scenario = loads(small.SLIDER_CRANK)
+    scenario = loads(small.SLIDER_CRANK, small.FEW)
     (folder / "crank.yaml").write_text(small.SLIDER_CRANK)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(solver, "VISIT", 100)  # steps of a block
@@ -224,7 +224,8 @@ def test_damaged_checkpoints(broken_off, tmp_path, at_once):
             digest = hashlib.sha256(inner).hexdigest()
             damaged = f"{checkpoint.MAGIC} {digest}\n".encode() + inner
         checkpoint.beside(folder / "x.h5").write_bytes(damaged)
-        words = ["run", str(folder / "crank.yaml"), "--resume", "-o", str(folder / "x.h5"), "-q"]
+        words = ["run", str(folder / "crank.yaml"), "--resume", "-o", str(folder / "x.h5"), "-q",
+                 "--set", *small.FEW]  # fmt: skip
         code, said = ended(words)
         counts[code] += 1
         assert code in ENDS, (k, said)

@@ -1,9 +1,12 @@
 """A study as trsim.sweeps.study gives it, of runs that were made already."""
 
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 from trsim.store.read import read
+
+_read = cache(read)  # no case is written again, and those of a design have few files
 
 
 @dataclass(frozen=True)
@@ -20,7 +23,7 @@ class Case:
         return self.file.is_file()
 
     def run(self):
-        return read(self.file)
+        return _read(self.file)
 
 
 @dataclass(frozen=True)

@@ -261,13 +261,13 @@ def end():
 def interrupted():
     threading.Thread(target=end, daemon=True).start()
     try:
-        trsim.run("crank.yaml", "long.h5", {"solver.end": "0.4 s"}, checkpoint=0.05)
+        trsim.run("crank.yaml", "long.h5", {"solver.end": "0.15 s"}, checkpoint=0.05)
     except KeyboardInterrupt as stop:
         print(stop)
     print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)
 
 interrupted()
-whole = trsim.run("crank.yaml", "long.h5", {"solver.end": "0.4 s"}, resume=True)
+whole = trsim.run("crank.yaml", "long.h5", {"solver.end": "0.15 s"}, resume=True)
 print(whole.summary["resumed_from"] > 0, whole.summary["content_sha256"])
 """
 
@@ -277,10 +277,10 @@ def test_interrupted_and_resumed(here):
     out, err = outside.started(here, "-c", INTERRUPTED).communicate()
     told, before, resumed = out.splitlines()
     assert "long.h5.part holds the run until" in told, err
-    again = "`trsim.run('crank.yaml', 'long.h5', set={'solver.end': '0.4 s'}, checkpoint=0.05, "
+    again = "`trsim.run('crank.yaml', 'long.h5', set={'solver.end': '0.15 s'}, checkpoint=0.05, "
     assert f"{again}resume=True)` goes on with the run" in told
     assert before == "True"
-    unbroken = trsim.run("crank.yaml", "unbroken.h5", {"solver.end": "0.4 s"})
+    unbroken = trsim.run("crank.yaml", "unbroken.h5", {"solver.end": "0.15 s"})
     assert resumed == f"True {unbroken.summary['content_sha256']}"
 
 

@@ -230,7 +230,7 @@ def test_check_finds_redundant_rows(scenario, answer):
 
 
 def test_show_and_report(scenario, trsim, answer):
-    trsim("run", "crank.yaml", "-o", "x.h5")
+    trsim("run", "crank.yaml", "-o", "x.h5", "--set", *small.FEW)
     code, out, _ = trsim("show", "x.h5")
     assert code == 0
     assert "301 rows" in out or "301 of" in out

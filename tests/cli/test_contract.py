@@ -98,13 +98,23 @@ WRONG = {  # exit code -> text of the scenario, and what it is replaced by
 }
 
 
+@pytest.fixture(scope="module")
+def prepared(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("prepared")
+    (folder / "crank.yaml").write_text(small.SLIDER_CRANK)
+    small.copy(folder / "x.h5", *small.FEW)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        see = plan("crank.yaml", VARIED[1:2])
+    (folder / "sweep").mkdir()
+    write_plan(folder / "sweep", see, "")
+    return folder
+
+
 @pytest.fixture
-def folder(scenario):
+def folder(prepared, scenario):
     """A scenario, its result file, and a sweep that did not begin, in the current folder."""
-    small.copy(scenario.parent / "x.h5")
-    see = plan("crank.yaml", VARIED[1:2])
-    (scenario.parent / "sweep").mkdir()
-    write_plan(scenario.parent / "sweep", see, "")
+    shutil.copytree(prepared, scenario.parent, dirs_exist_ok=True)
     return scenario.parent
 
 
@@ -199,6 +209,7 @@ joints: {pivot: {type: revolute, bodies: [ground, bob], at: [0, 0]}}
 
 def test_analyses_of_report(folder, document, trsim, monkeypatch):
     monkeypatch.setattr("trsim.report.figures.draw", lambda *_: [])  # no analysis is in them
+    small.copy(folder / "x.h5")
     words = ("--table", "points:journal,peak:B.contact_force", "--lyapunov", "stroke")
     told = document("report", "x.h5", *words)
     assert [value["what"] for value in told["values"][1:]] == [
@@ -288,7 +299,7 @@ def test_schemas_are_published(word, trsim, tmp_path, monkeypatch):
     assert (code, out) == (0, "deep/trsim.json\n")
     assert ("# yaml-language-server: $schema=deep/trsim.json" in err) == (word == "scenario")
     assert json.loads((tmp_path / "deep/trsim.json").read_text()) == SCHEMAS[word]
-    assert trsim("schema", "-o", "deep/trsim.json")[0] == 0  # an older one may be replaced
+    assert trsim("schema", "trsim", "-o", "deep/trsim.json")[0] == 0  # an older one may be replaced
 
 
 def test_schema_says_what_every_key_means():
@@ -308,7 +319,7 @@ def test_schema_replaces_no_other_file(folder, document):
     text = (folder / "crank.yaml").read_text()
     (folder / "other.json").write_text('{"title": "mine"}')
     for name in ("crank.yaml", "other.json", "x.h5"):
-        told = document("schema", "-o", name, code=2)
+        told = document("schema", "trsim", "-o", name, code=2)
         assert "is not a schema of trsim" in told["errors"][0]["what"]
     assert (folder / "crank.yaml").read_text() == text
 

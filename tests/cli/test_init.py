@@ -35,7 +35,8 @@ def test_a_template_is_written_and_checks(name, trsim, here):
     assert any(digit in text.splitlines()[0] for digit in "0123456789")
     assert "Try:\n  " in err
     assert load(first).title in err
-    assert trsim("check", first)[0] == 0
+    if name not in ALONE or f"trsim check {first}" not in commands(text):  # these are typed below
+        assert trsim("check", first)[0] == 0
 
 
 def test_files_are_those_of_the_project(trsim, here):

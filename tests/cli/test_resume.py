@@ -16,7 +16,7 @@ from trsim.store.checkpoint import load, store
 from trsim.store.plain import Plain
 from trsim.store.read import read
 
-LONG = ("--set", "output.every=0.2us")  # three chunks of rows
+LONG = ("--set", "output.every=0.2us", "--set", "output.channels=[stroke, B.force]")  # three chunks
 
 
 @pytest.fixture(scope="module")

@@ -116,7 +116,7 @@ def channels(file):
 @pytest.mark.parametrize("change", [attributes, texts, channels])
 def test_texts_of_a_result_file(change, scenario, said):
     path = scenario.parent / "x.h5"
-    small.copy(path)
+    small.copy(path, *small.FEW)
     with h5py.File(path, "r+") as file:
         change(file)
     said("show", "x.h5")

@@ -3,13 +3,14 @@
 import base64
 import re
 from html.parser import HTMLParser
+from itertools import islice
 
 import h5py
 import pytest
 
 from tests import small
 from tests.report.test_components import SPRUNG
-from trsim.report import report
+from trsim.report import figures, report
 from trsim.report.looks import Looks
 from trsim.store.read import read
 
@@ -33,6 +34,12 @@ class Seen(HTMLParser):
 
     def handle_data(self, data):
         self.texts.append(data)
+
+
+@pytest.fixture
+def without_pictures(monkeypatch):
+    """Figures are drawn for nothing where a page is read for its texts."""
+    monkeypatch.setattr("trsim.report.figures.draw", lambda *_: [])
 
 
 def page(folder):
@@ -61,8 +68,11 @@ def test_everything_of_a_run(tmp_path):
     assert not re.search(r"(src|href)=\"(http|//|[a-z_]+\.png)", text)
 
 
-def test_the_same_to_the_byte_wherever_it_is_made(tmp_path):
-    small.copy(tmp_path / "x.h5")
+def test_the_same_to_the_byte_wherever_it_is_made(tmp_path, monkeypatch):
+    """Of the figures the first ones are enough; test_figures compares all of them."""
+    every = figures.everything
+    monkeypatch.setattr(figures, "everything", lambda runs: islice(every(runs), 3))
+    small.copy(tmp_path / "x.h5", *small.FEW)
     report(tmp_path / "x.h5", tmp_path / "a")
     report(tmp_path / "x.h5", tmp_path / "b/c")
     assert page(tmp_path / "a")[0] == page(tmp_path / "b/c")[0]
@@ -70,17 +80,21 @@ def test_the_same_to_the_byte_wherever_it_is_made(tmp_path):
 
 @pytest.mark.parametrize("form, kind", [("pdf", "png"), ("svg", "svg+xml")])
 def test_other_kinds_of_figures_are_in_it_too(form, kind, tmp_path):
-    small.run(tmp_path / "x.h5", text=SPRUNG)
+    text = SPRUNG.replace("every: 5 ms", "every: 5 ms, channels: [strut.force, block.position]")
+    small.run(tmp_path / "x.h5", text=text)
     written = report(tmp_path / "x.h5", tmp_path / "r", Looks(form=form))
     seen = page(tmp_path / "r")[1]
-    assert len(seen.images) == len([path for path in written if path.suffix == f".{form}"]) - 1
+    assert len(seen.images) == len([path for path in written if path.suffix == f".{form}"]) - 1 > 1
     assert all(src.startswith(f"data:image/{kind};base64,") for src in seen.images)
     begin = {"png": b"\x89PNG", "svg+xml": b"<?xml"}[kind]
     for src in seen.images:
         assert base64.b64decode(src.partition("base64,")[2]).startswith(begin)
 
 
-def test_several_runs(paths, tmp_path):
+def test_several_runs(tmp_path):
+    paths = [tmp_path / "a.h5", tmp_path / "b.h5"]
+    for path, clearance in zip(paths, ("0.5mm", "0.1mm"), strict=True):
+        small.run(path, f"joints.B.clearance={clearance}", *small.FEW)
     report(paths, tmp_path)
     seen = page(tmp_path)[1]
     assert [kind for _, kind in seen.kinds].count("animation") == 2
@@ -88,7 +102,7 @@ def test_several_runs(paths, tmp_path):
     assert len(set(seen.anchors)) == len(seen.anchors)
 
 
-def test_a_run_that_cannot_be_animated(tmp_path):
+def test_a_run_that_cannot_be_animated(tmp_path, without_pictures):
     """Without places of bodies, or with a scenario that is not understood any more."""
     text = SPRUNG.replace("every: 5 ms", "every: 5 ms, channels: [height, strut.force]")
     small.run(tmp_path / "x.h5", text=text)
@@ -102,7 +116,7 @@ def test_a_run_that_cannot_be_animated(tmp_path):
     assert any("No animation: " in one for one in page(tmp_path / "b")[1].texts)
 
 
-def test_names_are_text(tmp_path):
+def test_names_are_text(tmp_path, without_pictures):
     """What is in a title is no markup."""
     text = SPRUNG.replace("Mass on springs", "'<script>alert(1)</script> & co'")
     small.run(tmp_path / "x.h5", text=text)

@@ -16,7 +16,7 @@ ASKED = "when=B.eccentricity_x_rate,crosses=up,plot=B.eccentricity_x:B.eccentric
 
 
 def test_figure_and_table(tmp_path):
-    small.run(tmp_path / "run.h5")
+    small.copy(tmp_path / "run.h5")
     written = analysed([tmp_path / "run.h5"], tmp_path / "figures", Asked(section=(ASKED,))).files
     table, figure = written[-2:]
     stem = "section_B.eccentricity_x_rate_up_B.eccentricity_x_B.eccentricity_y"
@@ -31,12 +31,12 @@ def test_figure_and_table(tmp_path):
 
 
 def test_refused(tmp_path):
-    small.run(tmp_path / "run.h5")
+    small.copy(tmp_path / "run.h5")
     with pytest.raises(UsageError, match="plot= is two channels"):
         analysed([tmp_path / "run.h5"], tmp_path / "figures", Asked(section=(WRONG,)))
 
 
 def test_time_crosses_nothing_again(tmp_path):
-    small.run(tmp_path / "run.h5")
+    small.copy(tmp_path / "run.h5")
     with pytest.raises(UsageError, match="time does not cross"):
         analysed([tmp_path / "run.h5"], tmp_path, Asked(section=("when=time,plot=time:stroke",)))

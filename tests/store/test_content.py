@@ -23,7 +23,7 @@ def test_content_hash_does_not_depend_on_flushes(result, tmp_path, monkeypatch):
 @pytest.mark.parametrize("what", ["row", "attribute", "text", "peak"])
 def test_content_hash_covers(what, tmp_path):
     path = tmp_path / "run.h5"
-    small.run(path)
+    small.copy(path)
     with h5py.File(path, "r+") as file:
         if what == "row":
             file["B.force"][150, 1] += 1e-12
@@ -39,7 +39,7 @@ def test_content_hash_covers(what, tmp_path):
 
 def test_content_hash_leaves_out_provenance(tmp_path):
     path = tmp_path / "run.h5"
-    small.run(path)
+    small.copy(path)
     with h5py.File(path, "r+") as file:
         file["provenance"].attrs["machine"] = "another"
     assert verify(path)

@@ -15,8 +15,8 @@ from tests.store import outside
 from tests.store.outside import ROOT, started
 from trsim.store.hdf5 import read
 
-CUTS = size(100, 1_000)
-FLIPS = size(500, 10_000)  # bytes
+CUTS = size(60, 1_000)
+FLIPS = size(250, 10_000)  # bytes
 NOTICED = 0.99  # of the changes of contents
 
 # Reads damaged copies of a file: argv = original, work file, kind, first case, end.
@@ -92,7 +92,7 @@ for k in range(int(begin), int(end)):
 def result(tmp_path_factory):
     """A result with every kind of table, but few channels: it is read a thousand times."""
     path = tmp_path_factory.mktemp("damage") / "run.h5"
-    small.run(path, "output.channels=[stroke, B.force, B.penetration]")
+    small.run(path, "output.channels=[stroke, B.force, B.penetration]", "solver.end=1.5 ms")
     return read(path)
 
 

@@ -32,10 +32,15 @@ from trsim.sweeps.plan import plan
 
 ENDING = {".part": PART, ".part.new": PART, ".lock": LOCK, ".checkpoint": CHECKPOINT,
           ".checkpoint.new": CHECKPOINT}  # fmt: skip
+# few channels: each takes calls to be made, none of which changes the folder
+TEXT = small.SLIDER_CRANK.replace("every: 0.01 ms", "every: 0.01 ms, channels: [stroke, B.force]")
 SETS = ("joints.B.clearance=[0.4 mm, 0.5 mm]", "solver.end=0.5 ms")
 
 
 WRITERS = tuple(f"{Path(module.__file__).parent}/" for module in (store, sweeps, h5py))
+# the modules and types whose functions of C change no file
+HARMLESS = {"builtins", "math", "time", "str", "bytes", "int", "dict", "list", "tuple", "type",
+            "ndarray", "numpy._core._multiarray_umath", "HASH"}  # fmt: skip
 ENOUGH = 4096  # bytes: what is longer is a file with rows
 
 
@@ -63,13 +68,21 @@ def beginning(path):
     return start
 
 
+def harmless(function):
+    """Whether a function of C changes no file: most calls are of these."""
+    of = getattr(function, "__self__", None)
+    return getattr(of, "__name__", type(of).__name__) in HARMLESS
+
+
 @contextmanager
 def instants(folder, kept):
     """Copies of a folder in all states it goes through, one after the other, in `kept`."""
     states = set()
 
-    def look(frame, *_):
+    def look(frame, event, function):
         if not frame.f_code.co_filename.startswith(WRITERS):
+            return
+        if event.startswith("c_") and harmless(function):
             return
         sys.setprofile(None)
         state = looks(folder)
@@ -93,7 +106,7 @@ def some(folders):
 
 @pytest.fixture(scope="module")
 def scene():
-    scenario = loads(small.SLIDER_CRANK, SETS[1:])
+    scenario = loads(TEXT, SETS[1:])
     return scenario, assemble(scenario)
 
 
@@ -143,7 +156,7 @@ def again(folder, scene):
     return hdf5.write(path, *scene, blocks, hdf5.Around(kept=kept))
 
 
-def test_a_run_killed_at_any_instant(scene, tmp_path, monkeypatch):
+def test_a_run_killed_at_any_instant(scene, tmp_path, monkeypatch, at_once):
     """Begun, gone on with from a checkpoint, or recovered from."""
     monkeypatch.setattr(solver, "VISIT", 15)  # steps of a block
     here, kept = tmp_path / "here", tmp_path / "kept"
@@ -161,11 +174,15 @@ def test_a_run_killed_at_any_instant(scene, tmp_path, monkeypatch):
         for path in folder.iterdir():
             kind = ENDING.get(path.name.removeprefix("x.h5"))
             assert kind is None or own.exists(path, kind), (folder, path)
+    parts = set()
     for folder in some(folders):
         refuse_if_written(folder / "x.h5")
-        if (folder / "x.h5.part").exists() and folder in folders[:10]:
+        part = folder / "x.h5.part"
+        content = part.read_bytes() if part.exists() else None
+        if content is not None and content not in parts:  # recovered in a process of its own
+            parts.add(content)
             try:
-                recover(folder / "x.h5.part", tmp_path / "recovered.h5")
+                recover(part, tmp_path / "recovered.h5")
             except FileError as error:
                 assert "recover" in str(error)
         summary = again(folder, scene)
@@ -183,7 +200,7 @@ def test_a_sweep_killed_at_any_instant(tmp_path):
         for task in tasks:
             yield task, job.run(task, lambda: None)
 
-    (tmp_path / "crank.yaml").write_text(small.SLIDER_CRANK)
+    (tmp_path / "crank.yaml").write_text(TEXT)
     planned = plan(str(tmp_path / "crank.yaml"), SETS, "one")
     here, kept = tmp_path / "here", tmp_path / "kept"
     here.mkdir()

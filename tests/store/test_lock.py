@@ -68,7 +68,7 @@ def test_second_is_refused(words, going, begun, capsys):
 
 
 def test_recover_into_a_file_that_is_written(going, tmp_path, capsys):
-    small.run(tmp_path / "x.h5")
+    small.copy(tmp_path / "x.h5")
     assert trsim(("recover", str(tmp_path / "x.h5"), "-o", "runs/crank.h5")) == 7
     assert "is being written by process" in capsys.readouterr().err
 
@@ -165,7 +165,7 @@ main(["recover", "x.h5", "-o", "y.h5"])
 
 @pytest.mark.parametrize("number, left", [(2, False), (15, False), (9, True)])
 def test_recover_that_is_ended_takes_its_helper_along(number, left, tmp_path):
-    small.run(tmp_path / "x.h5")
+    small.copy(tmp_path / "x.h5")
     process = outside.started(tmp_path, "-c", SLOW)
     pid = tmp_path / "pid"
     begun = time.monotonic()

@@ -19,7 +19,7 @@ from trsim.store.plain import Plain, checksum
 from trsim.store.read import read, verify
 from trsim.store.recover import copy, recover
 
-KILLS = np.random.default_rng(9).uniform(0.05, 1.6, (size(1, 50), 10))  # s after the first rows
+KILLS = np.random.default_rng(9).uniform(0.05, 1.6, (size(1, 125), 4))  # s after the first rows
 
 
 def whole(path):

@@ -296,7 +296,7 @@ def test_cases_that_fail(scenario, tmp_path):
 # --- killed ----------------------------------------------------------------------------------
 
 SWEEP = [sys.executable, "-m", "trsim", "sweep"]
-KILLS = size(10, 20)
+KILLS = size(4, 20)
 FINE = (f"{B}=lin(0.2 mm, 0.5 mm, 6)", "solver.end=2 ms")
 
 
@@ -321,25 +321,34 @@ def alive(pids):
     ]
 
 
+def one_more(process, folder):
+    """Wait until a case more is stored than there were: others are at work then."""
+    before = len(entries(folder))
+    while len(entries(folder)) <= before and process.poll() is None:
+        time.sleep(0.002)
+
+
 def test_killed_at_any_time(scenario, tmp_path):
     """Parent or worker killed, the same command again: the same set; no orphans."""
     calm, stormy = tmp_path / "calm", tmp_path / "stormy"
     arguments = [str(scenario), *(word for one in FINE for word in ("--set", one)), "-q", "-j", "2"]
-    began = time.monotonic()
-    subprocess.run(
-        [*SWEEP, *arguments, "-o", str(calm)], cwd=ROOT, check=True, stdout=subprocess.DEVNULL
-    )
-    whole = time.monotonic() - began
+    made(scenario, calm, FINE)
     dice = random.Random(1)
-    kills = 0
-    while kills < KILLS:
+    for kill in range(KILLS):
         process = subprocess.Popen(
             [*SWEEP, *arguments, "-o", str(stormy)], cwd=ROOT, stdout=subprocess.DEVNULL
         )
-        time.sleep(dice.uniform(0.3, 1.0) * whole)
+        if kill % 4 == 3:  # wherever it is
+            time.sleep(dice.uniform(0.2, 2.0))
+        elif kill % 4 == 2:  # while its workers begin
+            while not children(process.pid) and process.poll() is None:
+                time.sleep(0.01)
+            time.sleep(dice.uniform(0.0, 0.5))
+        else:
+            one_more(process, stormy)
+            time.sleep(dice.uniform(0.0, 0.1))
         workers = children(process.pid)
-        kills += 1
-        if kills % 2 and workers:
+        if kill % 2 == 0 and workers:
             os.kill(dice.choice(workers), signal.SIGKILL)
             assert process.wait(timeout=120) == 0  # one attempt more, and nothing else
             assert contents(stormy) == contents(calm)

@@ -53,6 +53,8 @@ ABOUT: dict[str, Any] = {
     "pdf": {"Creator": "trsim", "Producer": None, "CreationDate": None},
     "svg": {"Creator": "trsim", "Date": None},
 }
+# settings of a style file by which `savefig` lays a figure out itself
+LAYING = ("savefig.bbox", "figure.autolayout", "figure.constrained_layout.use")
 MANY = 20_000  # points of a curve that stays a picture in a PDF or SVG
 
 
@@ -152,13 +154,31 @@ def save(figure: Figure, path: Path) -> Path:
     path = path.with_suffix(f".{form}")
     if form == "pdf":
         shot = io.BytesIO()
-        figure.savefig(shot, format="png", metadata=ABOUT["png"])
+        picture(figure, shot)
         _sheets[-1].shots[path] = shot.getvalue()
     if form != "png":
         sharp(figure)
     with file_errors(path), fresh(path, FIGURES[form]) as unfinished:
-        figure.savefig(unfinished, format=form, metadata=ABOUT[form])
+        if form == "png":
+            picture(figure, unfinished)
+        else:
+            figure.savefig(unfinished, format=form, metadata=ABOUT[form])
     return path
+
+
+def picture(figure: Figure, target: Any) -> None:
+    """Write it as PNG: laid out, then drawn once.
+
+    `savefig` would draw a figure with a layout twice, and throw the first picture away.
+    """
+    layout = figure.get_layout_engine()
+    rc: Any = matplotlib.rcParams
+    given = rc["savefig.dpi"] != "figure"  # it is laid out for other dots then
+    if layout is not None and not given and not any(rc[key] for key in LAYING):
+        layout.execute(figure)
+        figure.set_layout_engine(None)
+    figure.savefig(target, format="png", metadata=ABOUT["png"])
+    figure.set_layout_engine(layout)
 
 
 def sharp(figure: Figure) -> None:

@@ -39,16 +39,22 @@ def explained(word: str | None = None) -> dict[str, list[Page]]:
     of a mapping come with it.  What a key may be, `akima`, and what is recorded, `reaction`, are
     words too, and so are units and topics.  Raises UsageError for a word nobody knows.
     """
+    found = _every()
+    return dict(found) if word is None else _of(word, found)
+
+
+@cache
+def _every() -> dict[str, list[Page]]:
+    """All there is; nobody writes into it."""
     of = definitions()["$defs"]
     kinds = [_element(name, section, of) for name, section in elements.ELEMENTS.items()]
     sections = [_section(name, rule, of) for name, rule in of["Scenario"]["properties"].items()]
     keys = [key for page in (*kinds, *sections) for key in page["keys"]]
     calls = list(functions())
-    found = {
+    return {
         "elements": kinds, "sections": sections, "keys": keys, "functions": calls,
         "values": [], "channels": [], "units": list(units()), "topics": list(_topics()),
     }  # fmt: skip
-    return found if word is None else _of(word, found)
 
 
 def _of(word: str, every: dict[str, list[Page]]) -> dict[str, list[Page]]:

@@ -7,13 +7,15 @@ indented to the same column continue it.  The rest describes the whole.
 import inspect
 import re
 from collections.abc import Iterator
+from functools import cache
 from typing import Any, get_args
 
 from trsim.fields import Spec
 
 
+@cache
 def meanings(of: type) -> dict[str, str]:
-    """Key -> its meaning, of a class with annotations and those it inherits from."""
+    """Key -> its meaning, of a class with annotations and those it inherits from; not changed."""
     found: dict[str, str] = {}
     for base in reversed(of.__mro__):
         own: dict[str, list[str]] = {}
