@@ -6,6 +6,7 @@ Which rows are redundant: redundant.py.  Whether motion stays in a plane: planar
 
 from collections.abc import Callable
 from math import tan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +55,7 @@ def less_reactions(work: Scene, wrenches: Array, lam: Array, J: Array | None = N
     for place in range(number.max(initial=0)):
         rows = np.flatnonzero(number > place)
         line = work.row_start[rows] + place
-        at = (..., work.line_frame[line], slice(None))
+        at: Any = (..., work.line_frame[line], slice(None))
         np.subtract.at(wrenches, at, J[..., line, :] * lam[rows, None])
 
 

@@ -140,7 +140,8 @@ class Packed:
         sizes = [math.prod(shape) for shape in room.values()]
         ends = [0, *itertools.accumulate(LINE * -(-size // LINE) for size in sizes)]
         piece = np.zeros(ends[-1])
-        start, own, fields = address(piece), vars(self), _fields(type(self))
+        record: Any = type(self)
+        start, own, fields = address(piece), vars(self), _fields(record)
         for (name, shape), size, begin in zip(room.items(), sizes, ends, strict=False):
             field = fields[name]
             _check(field, shape)
@@ -152,7 +153,8 @@ class Packed:
         """Fields that are given."""
         import numpy as np
 
-        own, fields = vars(self), _fields(type(self))
+        record: Any = type(self)
+        own, fields = vars(self), _fields(record)
         for name, value in values.items():
             field = fields[name]
             word = field.word
@@ -196,8 +198,8 @@ class _Field(NamedTuple):
 
 
 @cache
-def _fields(record: type[Packed]) -> dict[str, _Field]:
-    """The fields of a record by name, looked up once: records are made by the hundred."""
+def _fields(record: Any) -> dict[str, _Field]:
+    """The fields of a class of records by name, looked up once: records are made by the hundred."""
     import numpy as np
 
     return {
