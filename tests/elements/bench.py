@@ -41,14 +41,22 @@ def quaternion(rotation: np.ndarray) -> np.ndarray:
 
 def product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """The quaternion p o q."""
-    return np.array([p[0] * q[0] - p[1:] @ q[1:],
-                     *(p[0] * q[1:] + q[0] * p[1:] + np.cross(p[1:], q[1:]))])  # fmt: skip
+    (a, b, c, d), (e, f, g, h) = p.tolist(), q.tolist()
+    return np.array([
+        a * e - b * f - c * g - d * h, a * f + b * e + c * h - d * g,
+        a * g + c * e + d * f - b * h, a * h + d * e + b * g - c * f,
+    ])  # fmt: skip
 
 
 def matrix(p: np.ndarray) -> np.ndarray:
-    """Rotation matrix of a unit quaternion."""
-    return np.array([product(product(p, np.array([0.0, *e])), p * [1, -1, -1, -1])[1:]
-                     for e in np.eye(3)]).T  # fmt: skip
+    """Rotation matrix of a unit quaternion: 2 u u^T + (w^2 - u^2) I + 2 w u~, u of it, w before."""
+    w, x, y, z = p.tolist()
+    straight = w * w - x * x - y * y - z * z
+    return np.array([
+        [2 * x * x + straight, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 2 * y * y + straight, 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 2 * z * z + straight],
+    ])  # fmt: skip
 
 
 @dataclass

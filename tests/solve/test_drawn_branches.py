@@ -14,7 +14,7 @@ from trsim.solve.diagnose.doubts import doubts
 from ..runs import run
 from ..sizes import size
 
-SEEDS = size(60, 1500)
+SEEDS = size(40, 1500)
 TOGETHER = 20  # in one test
 # one in ten makes ten thousand steps around its flat places: it is judged as far as it came
 STEPS = size(2_000, 1_000_000)

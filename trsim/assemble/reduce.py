@@ -6,6 +6,7 @@ Which rows are redundant: redundant.py.  Whether motion stays in a plane: planar
 
 from collections.abc import Callable
 from math import tan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,13 +47,16 @@ def spread_out(work: Scene, rows: int) -> Array:
     return against_rates(work, J[:, 1:].reshape(rows, 6 * (work.n - 1)))
 
 
-def less_reactions(work: Scene, wrenches: Array, lam: Array) -> None:
-    """wrenches (n, 6) -= J^T lam of the rows of the solve, at the last evaluation."""
+def less_reactions(work: Scene, wrenches: Array, lam: Array, J: Array | None = None) -> None:
+    """wrenches (n, 6) -= J^T lam of the rows of the solve, at the last evaluation; or those of some
+    states (k, n, 6), with the lines J (k, lines, 6) of each."""
+    J = work.J if J is None else J
     number = np.diff(work.row_start[: work.m + 1])
     for place in range(number.max(initial=0)):
         rows = np.flatnonzero(number > place)
         line = work.row_start[rows] + place
-        np.subtract.at(wrenches, work.line_frame[line], work.J[line] * lam[rows, None])
+        at: Any = (..., work.line_frame[line], slice(None))
+        np.subtract.at(wrenches, at, J[..., line, :] * lam[rows, None])
 
 
 def largest_reaction(work: Scene) -> float:
@@ -70,28 +74,35 @@ def moves(model: Model, planar: bool) -> NDArray[np.bool_]:
     return found.ravel()
 
 
-def against_rates(work: Scene, rows: Array) -> Array:
+def against_rates(work: Scene, rows: Array, G: Array | None = None) -> Array:
     """Rows against world-axes twists (k, 6 (n-1)) as rows against world-axes rates.
 
     What turns a node of a beam moves its slope g: omega = g x g' / |g|^2; m -> m x g / |g|^2.
+    G: slopes of the workspace, or (k, n, 6) those of each row.
     """
     if work.n_r == work.n:
         return rows
     shape = rows.shape
     rows = rows.reshape(len(rows), work.n - 1, 6).copy()
-    g = work.G[work.n_r :, :3]
-    square = np.sum(g * g, axis=1)[:, None]
+    g = (work.G if G is None else G)[..., work.n_r :, :3]
+    square = np.sum(g * g, axis=-1)[..., None]
     m, on, back = rows[:, work.n_r - 1 :, 3:], [1, 2, 0], [2, 0, 1]
-    rows[:, work.n_r - 1 :, 3:] = (m[..., on] * g[:, back] - m[..., back] * g[:, on]) / square
+    rows[:, work.n_r - 1 :, 3:] = (m[..., on] * g[..., back] - m[..., back] * g[..., on]) / square
     return rows.reshape(shape)
 
 
 def along_rates(work: Scene, wrenches: Array) -> Array:
     """Wrenches (n, 6) on the frames, and the elastic forces along the slopes of the workspace, as
     forces along the world-axes rates (6 (n-1))."""
-    found = against_rates(work, wrenches[1:].reshape(1, -1)).reshape(-1, 6).copy()
-    found[work.n_r - 1 :, 3:] += work.Q[work.n_r :]
-    return found.ravel()
+    return along_rates_of(work, wrenches[None], work.G[None], work.Q[None])[0]
+
+
+def along_rates_of(work: Scene, wrenches: Array, G: Array, Q: Array) -> Array:
+    """`along_rates` of some states at once (k, 6 (n-1)): their wrenches (k, n, 6), G and Q."""
+    found = against_rates(work, wrenches[:, 1:].reshape(len(wrenches), -1), G)
+    found = found.reshape(len(wrenches), -1, 6).copy()
+    found[:, work.n_r - 1 :, 3:] += Q[:, work.n_r :]
+    return found.reshape(len(wrenches), -1)
 
 
 def world_rates(model: Model, y: Array) -> Array:

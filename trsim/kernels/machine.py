@@ -23,6 +23,7 @@ from typing import Any
 
 from trsim.errors import FileError
 from trsim.kernels import carried, fingerprint, kept
+from trsim.kernels.buffer import address
 from trsim.kernels.kept import folder
 from trsim.kernels.lazy import PYTHON, Lazy
 from trsim.kernels.lock import turn
@@ -192,7 +193,7 @@ def _array(value: Any, kind: Kind) -> tuple[int, ...]:
         raise TypeError(f"wanted {kind.name}, got {value.ndim} dimensions of {value.dtype}")
     if not value.flags.c_contiguous:
         raise TypeError("an array must be contiguous")
-    return (0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
+    return (0, 0, value.size, value.itemsize, address(value), *value.shape, *value.strides)
 
 
 # --- files -----------------------------------------------------------------------------------

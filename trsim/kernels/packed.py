@@ -16,9 +16,11 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
+from functools import cache
 from operator import setitem
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from trsim.kernels.buffer import address
 from trsim.kernels.lazy import PYTHON
 from trsim.kernels.signatures import KINDS, Kind
 
@@ -117,13 +119,12 @@ class Packed:
             else:
                 values = {name: np.zeros(n) for name, n in self.sizes.items()} | values
             self._make(room or {}, words)
-            for name, value in values.items():
-                self._take(name, value, words)
+            self._take(values, words)
             wrong = self.places.keys() - vars(self).keys()
         if wrong:
             raise TypeError(f"{type(self).__name__}: fields {sorted(wrong)} missing or unknown")
         self.words = np.array(words, np.int64)
-        self.address = self.words.ctypes.data
+        self.address = address(self.words)
 
     def _share(self, like: Packed, words: list[int]) -> None:
         """The first fields, as another record has them."""
@@ -139,40 +140,37 @@ class Packed:
         sizes = [math.prod(shape) for shape in room.values()]
         ends = [0, *itertools.accumulate(LINE * -(-size // LINE) for size in sizes)]
         piece = np.zeros(ends[-1])
-        start = piece.ctypes.data
+        record: Any = type(self)
+        start, own, fields = address(piece), vars(self), _fields(record)
         for (name, shape), size, begin in zip(room.items(), sizes, ends, strict=False):
-            vars(self)[name] = piece[begin : begin + size].reshape(shape)
-            self._check(name, shape)
-            word = WORDS * self.places[name]
-            words[word : word + 1 + len(shape)] = (start + piece.itemsize * begin, *shape)
+            field = fields[name]
+            _check(field, shape)
+            part = piece[begin : begin + size]
+            own[name] = part if field.dimensions == 1 else part.reshape(shape)
+            words[field.word : field.word + 1 + len(shape)] = (start + 8 * begin, *shape)
 
-    def _take(self, name: str, value: Any, words: list[int]) -> None:
-        """A field."""
+    def _take(self, values: dict[str, Any], words: list[int]) -> None:
+        """Fields that are given."""
         import numpy as np
 
-        kind, word = self.kind.fields[self.places[name]][1], WORDS * self.places[name]
-        if kind.dimensions:
-            if not _fits(value, kind):
-                value = np.require(value, kind.dtype, ["C", "W"])
-            self._check(name, value.shape)
-            words[word : word + 1 + value.ndim] = (value.ctypes.data, *value.shape)
-        elif kind.dtype == "float64":
-            number = np.float64(value)
-            words[word] = int(number.view(np.int64))
-            value = number if PYTHON else value
-        else:
-            words[word] = value
-        vars(self)[name] = value
-
-    def _check(self, name: str, shape: tuple[int, ...]) -> None:
-        """Raise TypeError where an array is not as compiled code takes it to be."""
-        kind = self.kind.fields[self.places[name]][1]
-        if len(shape) != kind.dimensions:
-            raise TypeError(f"{name}: {len(shape)} dimensions instead of {kind.dimensions}")
-        if shape[0] != self.sizes.get(name, shape[0]):
-            raise TypeError(f"{name}: {shape[0]} numbers instead of {self.sizes[name]}")
-        if kind.columns and shape[1] != kind.columns:
-            raise TypeError(f"{name}: {shape[1]} columns instead of {kind.columns}")
+        record: Any = type(self)
+        own, fields = vars(self), _fields(record)
+        for name, value in values.items():
+            field = fields[name]
+            word = field.word
+            if field.dimensions:
+                if not _fits(value, field):
+                    value = np.require(value, field.dtype, ["C", "W"])
+                shape = value.shape
+                _check(field, shape)
+                words[word : word + 1 + len(shape)] = (address(value), *shape)
+            elif field.real:
+                number = np.float64(value)
+                words[word] = int(number.view(np.int64))
+                value = number if PYTHON else value
+            else:
+                words[word] = value
+            own[name] = value
 
     def arrays(self) -> dict[str, Any]:
         """The arrays by name."""
@@ -187,7 +185,43 @@ def _entry(holder: str, k: int) -> property:
     )
 
 
-def _fits(value: Any, kind: Kind) -> bool:
+class _Field(NamedTuple):
+    """What a record asks of a field."""
+
+    name: str
+    word: int  # where it begins among the words of the record
+    dimensions: int
+    real: bool  # a number with a fraction
+    dtype: Any
+    columns: int  # of a table that always has as many
+    number: int  # of an array that numbers which change are entries of
+
+
+@cache
+def _fields(record: Any) -> dict[str, _Field]:
+    """The fields of a class of records by name, looked up once: records are made by the hundred."""
+    import numpy as np
+
+    return {
+        name: _Field(
+            name, WORDS * k, kind.dimensions, kind.dtype == "float64", np.dtype(kind.dtype),
+            kind.columns, record.sizes.get(name, 0),
+        )
+        for k, (name, kind) in enumerate(record.kind.fields)
+    }  # fmt: skip
+
+
+def _check(field: _Field, shape: tuple[int, ...]) -> None:
+    """Raise TypeError where an array is not as compiled code takes it to be."""
+    if len(shape) != field.dimensions:
+        raise TypeError(f"{field.name}: {len(shape)} dimensions instead of {field.dimensions}")
+    if field.number and shape[0] != field.number:
+        raise TypeError(f"{field.name}: {shape[0]} numbers instead of {field.number}")
+    if field.columns and shape[1] != field.columns:
+        raise TypeError(f"{field.name}: {shape[1]} columns instead of {field.columns}")
+
+
+def _fits(value: Any, field: _Field) -> bool:
     """Whether compiled code can work on an array as it is."""
     flags = getattr(value, "flags", None)
-    return flags is not None and value.dtype == kind.dtype and flags.carray
+    return flags is not None and value.dtype == field.dtype and flags.carray

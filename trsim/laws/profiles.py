@@ -110,10 +110,8 @@ def meets_itself(p: Any) -> bool:
         along = np.sum((w - u) * d, axis=-1) / np.sum(d * d, axis=-1)
         return np.linalg.norm(w - u - np.clip(along, 0.0, 1.0)[..., None] * d, axis=-1)
 
-    for k in range(n):
-        others = [m for m in range(n) if (m - k) % n not in (0, 1, n - 1)]
-        if not others:
-            continue
+    for k in range(n - 2):  # each pair once; the last side is a neighbour of the first
+        others = slice(k + 2, n if k else n - 1)
         a, b, c, d = p[k], q[k], p[others], q[others]
         cross = (left(a, b, c) * left(a, b, d) < 0.0) & (left(c, d, a) * left(c, d, b) < 0.0)
         if cross.any() or (far(a, b, c) <= near).any() or (far(c, d, a) <= near).any():

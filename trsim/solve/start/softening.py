@@ -22,7 +22,7 @@ from trsim.assemble.equations import constraints, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
 from trsim.assemble.reduce import (
-    along_rates,
+    along_rates_of,
     displaced,
     in_solve_axes,
     jacobian,
@@ -177,19 +177,22 @@ def tangent(parts: Parts, y: Array, lam: Array) -> Array:
     poses(others, y)
     changes = size * np.eye(6 * (others.n - 1))[parts.acted]
     steps = [in_solve_axes(others, change) for change in changes]
-    for k, step in zip(parts.acted, steps, strict=True):
-        ends = []
-        for sign in (1.0, -1.0):
-            near = y.copy()
-            move_all(others, near, sign * step)
-            ends.append(unbalanced(others, near, lam))
-        K[:, k] -= (ends[0] - ends[1]) / (2.0 * size)
+    ends = unbalanced(others, y, [sign * step for step in steps for sign in (1.0, -1.0)], lam)
+    K[:, parts.acted] -= ((ends[::2] - ends[1::2]) / (2.0 * size)).T
     return K
 
 
-def unbalanced(work: Scene, y: Array, lam: Array) -> Array:
-    """F - J^T lam at rest along the world-axes rates (6 (n-1))."""
-    F = wrenches_at_rest(work, y).copy()
-    constraints(work, 0.0)
-    less_reactions(work, F, lam)
-    return along_rates(work, F)
+def unbalanced(work: Scene, y: Array, steps: list[Array], lam: Array) -> Array:
+    """F - J^T lam at rest along the world-axes rates, a step away from y, for each (k, 6 (n-1))."""
+    told = work.F, work.J, work.G, work.Q
+    all_told = [np.empty((len(steps), *one.shape)) for one in told]
+    for k, step in enumerate(steps):
+        near = y.copy()
+        move_all(work, near, step)
+        wrenches_at_rest(work, near)
+        constraints(work, 0.0)
+        for found, one in zip(all_told, told, strict=True):
+            found[k] = one
+    F, J, G, Q = all_told
+    less_reactions(work, F, lam, J)
+    return along_rates_of(work, F, G, Q)
