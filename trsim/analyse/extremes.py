@@ -42,8 +42,7 @@ def extreme(run: Run, word: str, channel: str, within: Window, part: bool) -> Ex
     found = [
         Extreme(p.value, p.time, MOTION)
         for p in run.peaks
-        if (p.channel, p.extreme) == (kept, kept_as)
-        and (not part or within.begin <= p.time <= within.end)
+        if (p.channel, p.extreme) == (kept, kept_as) and (not part or within.has(p.time))
     ]
     tables = ((STEPS, in_touch(run, channel)), (ROWS, rows_in(run, channel, within)))
     for of, (time, x) in tables:

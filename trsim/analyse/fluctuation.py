@@ -9,6 +9,7 @@ that is faster than it: what is left of them is rounding.
 
 import numpy as np
 
+from trsim.analyse.window import between
 from trsim.arrays import Array
 
 WIDTH = 0.010  # s
@@ -39,5 +40,5 @@ def fluctuation(t: Array, x: Array, begin: float, end: float, width: float = WID
     """Root mean square of the high-passed curve for begin <= t <= end; nan of fewer than 2 rows."""
     if len(t) < 2:
         return np.nan
-    inside = (t >= begin) & (t <= end)
+    inside = between(t, (begin, end))
     return float(np.sqrt(np.mean(high_pass(t, x, width)[inside] ** 2)))

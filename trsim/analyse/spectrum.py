@@ -201,6 +201,6 @@ def strangers(found: Spectrum, moves: Spectrum, of: str) -> Iterator[str]:
 def beyond(run: Run, channel: str, within: Window, x: Array) -> float:
     """How far extremes at accepted steps lie outside of the rows, of the range of the rows."""
     size = float(np.ptp(x))
-    kept = [p for p in run.peaks if p.channel == channel and within.begin <= p.time <= within.end]
+    kept = [p for p in run.peaks if p.channel == channel and within.has(p.time)]
     out = [max(p.value - x.max(), x.min() - p.value) for p in kept]
     return max(0.0, *out) / size if out and size > 0.0 else 0.0

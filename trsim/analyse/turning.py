@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trsim.analyse.reference import Given
+from trsim.analyse.window import between
 from trsim.arrays import Array
 from trsim.errors import UsageError
 
@@ -108,7 +109,7 @@ def differences(
     of: the abscissa by its name.  Raises UsageError where the two cannot be compared.
     """
     time, s, x = (column[np.isfinite(run[1])] for column in run)
-    inside = (table.x >= within[0]) & (table.x <= within[1])
+    inside = between(table.x, within)
     if not inside.any():
         what = f"{table.name} has no row in the window of {of}"
         raise UsageError(what, f"It goes from {table.x.min():g} to {table.x.max():g} (SI).")
@@ -136,8 +137,7 @@ def differences(
 
 
 def _reaches(branch: Branch, s: Array, within: tuple[float, float]) -> bool:
-    rows = s[branch.begin : branch.end]
-    return bool(np.any((rows >= within[0]) & (rows <= within[1])))
+    return bool(np.any(between(s, within)[branch.begin : branch.end]))
 
 
 def _count(of: list[Branch]) -> str:

@@ -18,6 +18,7 @@ from trsim.errors import ScenarioError, UsageError, described
 from trsim.store.read import Run
 from trsim.units import quantity, unit
 
+ROUNDING = 1e-14  # of the largest: k * every and 300 ms are rounded, and an end may be a row
 FORM = "A window is @BEGIN..END in seconds, or @CHANNEL=BEGIN..END."
 
 
@@ -28,8 +29,19 @@ class Window(NamedTuple):
     end: float  # s
 
     def of(self, t: Array) -> NDArray[np.bool_]:
-        """Which of the times t (n) lie in it."""
-        return np.asarray((t >= self.begin) & (t <= self.end))
+        """Which of the times t (n) lie in it, its ends too."""
+        return between(t, self)
+
+    def has(self, t: float) -> bool:
+        """Whether one time lies in it."""
+        return bool(self.of(np.array([t]))[0])
+
+
+def between(x: Array, ends: tuple[float, float]) -> NDArray[np.bool_]:
+    """Which of some values x (n) lie between two ends; one at an end does, whatever the rounding
+    of it or of the end."""
+    e = ROUNDING * np.max(np.abs(x), where=np.isfinite(x), initial=0.0)
+    return np.asarray((x >= ends[0] - e) & (x <= ends[1] + e))
 
 
 def parted(word: str) -> tuple[str, str]:
@@ -118,7 +130,7 @@ def rows_in(run: Run, channel: str, within: Window) -> tuple[Array, Array]:
 def _passed(run: Run, channel: str, x: Array, whole: Window, low: float, high: float) -> Window:
     """The stretch in which a channel goes from one value to another."""
     time = run.time
-    inside = (x >= low) & (x <= high)
+    inside = between(x, (low, high))
     edges = np.flatnonzero(np.diff(inside, prepend=False, append=False))
     if edges.size > 2:
         what = f"{run.path}: '{channel}' is between these values {edges.size // 2} times"
@@ -126,15 +138,16 @@ def _passed(run: Run, channel: str, x: Array, whole: Window, low: float, high: f
     if not edges.size:
         return Window(np.inf, -np.inf)
     first, last = int(edges[0]), int(edges[1]) - 1
-    begin = _crossing(time, x, first - 1, low, high) if first else whole.begin
-    end = _crossing(time, x, last, low, high) if last + 1 < len(x) else whole.end
+    begin = _crossing(time, x, first, first - 1, (low, high)) if first else whole.begin
+    end = _crossing(time, x, last, last + 1, (low, high)) if last + 1 < len(x) else whole.end
     return Window(begin, end)
 
 
-def _crossing(time: Array, x: Array, k: int, low: float, high: float) -> float:
-    """Where between rows k and k + 1 the channel passes the limit that lies there."""
-    for limit in (low, high):
-        if min(x[k], x[k + 1]) <= limit <= max(x[k], x[k + 1]):
-            share = (limit - x[k]) / (x[k + 1] - x[k])
-            return float(time[k] + share * (time[k + 1] - time[k]))
-    return float(time[k])
+def _crossing(time: Array, x: Array, a: int, b: int, limits: tuple[float, float]) -> float:
+    """Where between row a, in the window, and row b, out of it, the channel passes a limit; at row
+    a where that is at the limit but for rounding."""
+    for limit in limits:
+        if min(x[a], x[b]) <= limit <= max(x[a], x[b]):
+            share = (limit - x[a]) / (x[b] - x[a])
+            return float(time[a] + share * (time[b] - time[a]))
+    return float(time[a])

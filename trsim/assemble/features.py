@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from trsim.assemble.jumps import NOBODY, driven
-from trsim.assemble.travel import of_instance, of_rate
+from trsim.assemble.travel import ANGLES, RATE_OF, of_instance, of_rate
 from trsim.elements.contract import SCENE, Pair, compiled
 from trsim.elements.prescribed import began
 from trsim.kernels.calls import caller
@@ -142,8 +142,44 @@ def hold_sensed(s, n, t, anew):
                 s.tab[place] = neighbour(s.tab, o, place, above)
             elif rate == 0.0 and anew != 0:
                 s.tab[place] = FREE
+        elif anew != 0:
+            wide, slow = rounding_of(s, o, place, t)
+            if high - u <= wide and rate > slow:
+                s.tab[place] = neighbour(s.tab, o, place, True)
+            elif u - low <= wide and rate < -slow:
+                s.tab[place] = neighbour(s.tab, o, place, False)
         changed += int(s.tab[place] != before)
     return changed
+
+
+@internal
+def rounding_of(s, o, place, t):
+    """How near to a corner, and how slow, u may be by the rounding of what sensors show.
+
+    A stroke that is zero as drawn is the difference of places as far as the mechanism is large;
+    what `corner` says of its size is next to nothing.  How u goes with a sensor is told by its rate
+    when that of the sensor is 1 more.  Rates of sensors are left out: how they change is not known.
+    """
+    v = w = 0.0
+    for f in range(1, s.n):
+        for c in range(3):
+            v, w = max(v, abs(s.V[f, c])), max(w, abs(s.V[f, 3 + c]))
+    v, near, slow = v + w * s.size, 0.0, 0.0
+    located(s.tab, o, t, s.S)
+    _, before, _ = corner(s.tab, o, place, s.S)
+    for k in range(s.sensed.shape[0]):
+        if s.sensed[k, KIND] >= RATE_OF:
+            continue
+        entry = s.sensed[k, ENTRY]
+        own = s.S[entry, 1]
+        s.S[entry, 1] = own + 1.0
+        located(s.tab, o, t, s.S)
+        _, rate, _ = corner(s.tab, o, place, s.S)
+        s.S[entry, 1] = own
+        scale = 1.0 if s.sensed[k, KIND] in ANGLES else s.size
+        near += NEAR * abs(rate - before) * scale
+        slow += NEAR * abs(rate - before) * v * scale / s.size
+    return near, slow
 
 
 @compiled(HOLD)

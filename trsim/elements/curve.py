@@ -168,6 +168,14 @@ class Curve(Placed):
             raise ScenarioError(what, "leave them out", ("tangents",))
         return self
 
+    @property
+    def outline(self):
+        """Places it goes through that lie far out, as drawn."""
+        if self.x is None:
+            return self.outermost(self.points or self.table)
+        raw = by_formula(self)
+        return self.outermost(raw.at(raw.nodes)[0])
+
 
 class Sampled(NamedTuple):
     """A curve as numbers for `tab`, and places on it close to each other."""

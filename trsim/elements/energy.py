@@ -59,16 +59,25 @@ def pack(name, spec, at):
 @internal
 def kinetic(scene):
     """Of all rigid bodies, J."""
-    T, V = 0.0, scene.V
+    T = 0.0
     for f in range(1, scene.n_r):
-        v, I = (V[f, 0], V[f, 1], V[f, 2]), scene.inertia[f]
-        T += 0.5 * scene.mass[f] * dot(v, v)
-        if scene.d == 3:
-            T += 0.5 * I[8] * V[f, 5] * V[f, 5]
-        else:
-            o = inside(scene.X, f, spin(V, f))
-            T += 0.5 * dot(o, times(I, o))
+        T += moving(scene, f, scene.mass[f], scene.inertia[f])
+    for q in range(scene.light.shape[0]):  # these are solved with more than they have
+        E = scene.lacking[q]
+        T -= moving(scene, scene.light[q], E[0], E[1:])
     return T
+
+
+@internal
+def moving(scene, f, mass, I):
+    """Kinetic energy of a mass and an inertia (9) that move with a frame, J."""
+    V = scene.V
+    v = (V[f, 0], V[f, 1], V[f, 2])
+    T = 0.5 * mass * dot(v, v)
+    if scene.d == 3:
+        return T + 0.5 * I[8] * V[f, 5] * V[f, 5]
+    o = inside(scene.X, f, spin(V, f))
+    return T + 0.5 * dot(o, times(I, o))
 
 
 @internal

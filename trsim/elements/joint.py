@@ -109,7 +109,7 @@ def joint(key, spec, rows, coordinates=(), pack=pack, **other):
         return replace(row, con=(*row.con, *room))
 
     follows = {
-        "meets": places == 3,
+        "meets": places == 3 or whole,
         "welds": (places, turns) == (3, 3),
         "pin": (2, 3) if ball else (2,) if places == 3 and "angle" in coordinates else (),
         "holds_twist": not whole,

@@ -150,6 +150,7 @@ def on_curve(rows: tuple[JointRow, ...], kernels: dict[str, Any], **other: Any) 
         "reach": reach,
         "turning": turning,
         "holds_twist": False,
+        "meets": True,
     }
     return Element(
         section="joints",

@@ -45,6 +45,16 @@ class Placed(Spec):
         y = direction(_across(x, direction(self.y_axis))[0])
         return Frame(self.at, (x[0], x[1], x[2]), (y[0], y[1], y[2]), across(x, y))
 
+    def outermost(self, places: Any) -> list[tuple[float, ...]]:
+        """Of places (n, 2) in its x-y plane those farthest out in eight directions, as drawn."""
+        import numpy as np
+
+        around = np.arange(8) * (0.25 * np.pi)
+        found = np.argmax(np.asarray(places) @ np.stack([np.cos(around), np.sin(around)]), axis=0)
+        own = self.frame
+        kept = (places[k] for k in dict.fromkeys(found.tolist()))
+        return [own.moved((float(x), float(y), 0.0)) for x, y in kept]
+
 
 def _across(x: Any, y: Any) -> tuple[tuple[float, ...], float]:
     """The part of y across a unit vector x, and its length."""

@@ -77,6 +77,11 @@ class Surface(Placed):
             raise ScenarioError("only a closed profile has an inside", "closed: true", ("hollow",))
         return self
 
+    @property
+    def outline(self):
+        """Places of a profile that lie far out, as drawn; of another shape none."""
+        return self.outermost(self.points) if self.points else []
+
 
 class Ball(Spec):
     """A ball of a body, or a roller whose axis is the z axis of the surface, or a point; or an

@@ -8,6 +8,7 @@ from trsim.analyse.busy import busy, common
 from trsim.analyse.plotted import Plotted, Rows
 from trsim.analyse.reference import Given
 from trsim.analyse.turning import Off, branches
+from trsim.analyse.window import between
 from trsim.arrays import Array
 from trsim.errors import UsageError
 from trsim.report import style
@@ -158,7 +159,7 @@ def stretch(drawn: Drawn, wanted: Limits | None) -> Limits | None:
         return wanted
     found, ends = [], []
     for one in drawn.every:
-        inside = (one.rows.x >= drawn.within[0]) & (one.rows.x <= drawn.within[1])
+        inside = between(one.rows.x, drawn.within)
         x = one.rows.x[inside]
         ends += [float(x.min()), float(x.max())] if len(x) else []
         for y in one.rows.y.values():
@@ -194,7 +195,7 @@ def lines(
 
 def cut(x: Array, y: Array, within: Limits, factors: tuple[float, float]) -> tuple[Array, Array]:
     """A curve in a window, broken where it leaves it, in display units."""
-    inside = (x >= within[0]) & (x <= within[1])
+    inside = between(x, within)
     return np.where(inside, x, np.nan) * factors[0], np.where(inside, y, np.nan) * factors[1]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from trsim.analyse.plotted import Plotted, limits, plotted, rows
 from trsim.analyse.reference import Given, given
 from trsim.analyse.turning import differences
+from trsim.analyse.window import between
 from trsim.errors import UsageError
 from trsim.report import style
 from trsim.report.asked import Found, Value, file_name, nothing, table
@@ -107,7 +108,7 @@ def written(
     """The rows that are drawn, as `export` writes them, the abscissa first: numbers in full."""
     names = list(dict.fromkeys([of.x, "time", *of.y]))
     columns = {"time": one.rows.time, **one.rows.y, of.x: one.rows.x}
-    inside = (one.rows.x >= within[0]) & (one.rows.x <= within[1])
+    inside = between(one.rows.x, within)
     units = [one.shown.told(one.shown.run.unit(name)) for name in names]
     titles = [f"{name} [{text}]" for name, (_, text) in zip(names, units, strict=True)]
     factors = [factor for factor, _ in units]

@@ -15,6 +15,7 @@ from typing import Any
 
 from trsim import elements
 from trsim.elements.rows import slides as moves_along
+from trsim.errors import ScenarioError
 
 SOFTEST, HARDEST = 1e6, 1e12  # Pa
 POISSON = 0.3  # where a law that gives K says nothing
@@ -124,6 +125,15 @@ def densities(scenario: Any) -> Iterator[str]:
             )
 
 
+def outline(shape: Any) -> list[tuple[float, ...]]:
+    """Places far out on a curve or a profile; none of what has no such line, or of one that
+    assembly refuses."""
+    try:
+        return list(getattr(shape, "outline", ()))
+    except ScenarioError:
+        return []
+
+
 def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
     """Where joints and forces hold each body, as drawn."""
     found: dict[str, list[tuple[float, ...]]] = {}
@@ -136,6 +146,15 @@ def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
         if elements.load(joint.type).meets:
             for body in joint.bodies:
                 add(body, getattr(joint, "at", None))
+        else:
+            for body, at in zip(
+                getattr(joint, "bodies", ()), getattr(joint, "points", ()), strict=False
+            ):
+                add(body, at)
+        for place in getattr(joint, "through", ()):
+            add(place.body, place.at)
+        for at in outline(getattr(joint, "curve", None)):
+            add(joint.bodies[0], at)
     for force in scenario.forces.values():
         add(getattr(force, "body", None), getattr(force, "at", None))
         places = getattr(force, "points", None) or (getattr(force, "at", None),) * 2
@@ -143,5 +162,7 @@ def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
             add(body, at)
         for end in map(lambda key: getattr(force, key, None), ("point", "wall", "ball", "surface")):
             add(getattr(end, "body", None), getattr(end, "at", None))
+            for at in outline(end):
+                add(getattr(end, "body", None), at)
     found.pop("ground", None)
     return found

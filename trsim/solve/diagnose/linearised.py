@@ -263,10 +263,13 @@ class Probe:
             forces(self.bars, 0.0)
             F = F - along_rates(self.bars, self.bars.F)
         found = in_solve_axes(work, F)
-        for f in range(1, work.n_r if work.d == 6 else 1):
-            o = 6 * (f - 1) + 3
-            omega = y[self.n_q + o : self.n_q + o + 3]
-            found[o : o + 3] -= np.cross(omega, work.inertia[f].reshape(3, 3) @ omega)
+        if work.d == 6:
+            inertia = np.array(work.inertia[: work.n_r])
+            inertia[work.light] -= work.lacking[:, 1:]
+            for f in range(1, work.n_r):
+                o = 6 * (f - 1) + 3
+                omega = y[self.n_q + o : self.n_q + o + 3]
+                found[o : o + 3] -= np.cross(omega, inertia[f].reshape(3, 3) @ omega)
         return found
 
     def drift(self) -> Array:
