@@ -239,7 +239,8 @@ def put(mechanism, other):
 
 @pytest.mark.parametrize("bend", [1e-2, 1e-4, 1e-6, 1e-8, 0.0])
 def test_chains_that_are_singular_only_with_the_hub_held(forced, bend):
-    """Knees on their lines: rods could move with the plate still, S_0 has no inverse, S has."""
+    """Knees on their lines: rods could move with the plate still, S_0 has no inverse, S has: the
+    factors tell nothing of S_0."""
     forced(1)
     made = assemble(loads(toggles(0.2)))
     assert len(hubs_of(made)) == 1
@@ -249,7 +250,7 @@ def test_chains_that_are_singular_only_with_the_hub_held(forced, bend):
     error = np.max(np.abs(found - expected)) / np.max(np.abs(expected))
     print(f"{bend:g} m: {went}, error {error:.1e}")
     assert regular == SOUND
-    assert went == (SOUND if bend > 1e-3 else POOR if bend > 1e-5 else SINGULAR)
+    assert went == SOUND
     assert error < 1e-12
 
 

@@ -13,8 +13,14 @@ are therefore taken with the bodies' own accelerations, b - J (M^-1 J^T x), not 
 with them the accelerations are right to eps/delta.
 
 Unknowns after the rows are the motions of hubs (pattern.py), with negative pivots and nothing on
-the right-hand side.  A pivot of a row is small too where the row depends on others with the hubs
-held only; what is refined is right all the same, since residuals are those of S.
+the right-hand side.  The pivot of a row before them is small too where the row depends on others
+with the hubs held only, as those of a crank and a rod in line do.  It tells nothing of S, so it is
+delayed: with its diagonal d_k added the elimination goes on, of what is now K + U D U^T, and the
+rest is a small system [Hager1989],
+
+    K^-1 = Z' + Z G^-1 Z^T        Z' = (K + U D U^T)^-1,  Z = Z' U,  G = D^-1 - U^T Z
+
+Such a row counts with its pivot behind all others, 1 / (S^-1)_kk.
 """
 
 from math import sqrt
@@ -33,15 +39,28 @@ PLAIN = 1e-6  # the same, of J J^T: whether the rows depend on each other, whate
 SHIFT = 1e-9  # of the diagonal, added to a singular S
 REFINEMENTS = 6
 LEFT_OVER = 1e-3  # of the right-hand side: more shows that the rows ask for different things
+ROUNDING = 1e-15  # of a diagonal of G: a smaller pivot is none
 
 
 @internal
 def factorise(s):
     """Factorise s.value in place, just filled by `rows`; s.status[0] tells how it went."""
+    factorise_delaying(s, s.delayed.size - 1)
+
+
+@internal
+def factorise_alone(s):
+    """`factorise` for who keeps the factors alone: no pivot is delayed."""
+    factorise_delaying(s, 0)
+
+
+@internal
+def factorise_delaying(s, most):
+    """`factorise` with so many delayed pivots at most."""
     s.status[2] += 1
     s.status[0] = SOUND
     diagonal(s)
-    smallest = eliminate(s, TINY)
+    smallest = eliminate_delaying(s, TINY, most)
     if smallest < WEAK:
         s.status[6] += 1
     if smallest <= TINY:
@@ -50,7 +69,7 @@ def factorise(s):
         for k in range(s.first.size):
             if s.row[s.column_start[k]] < s.m:
                 s.value[s.column_start[k]] += SHIFT * s.first[k]
-        eliminate(s, TINY)
+        eliminate_delaying(s, TINY, most)
     elif smallest < SMALL:
         s.status[0] = POOR
 
@@ -87,22 +106,34 @@ def hub_diagonal(s, k):
 @internal
 def eliminate(s, tiny):
     """Right-looking elimination; returns the smallest pivot if WEAK, as a share of its diagonal."""
+    return eliminate_delaying(s, tiny, s.delayed.size - 1)
+
+
+@internal
+def eliminate_delaying(s, tiny, most):
+    """`eliminate` with so many delayed pivots at most."""
     value, target, column_start = s.value, s.target, s.column_start
-    first, row, m = s.first, s.row, s.m
-    smallest, u = 1.0, 0
+    first, row, m, delayed = s.first, s.row, s.m, s.delayed
+    smallest, u, hubs_left, number = 1.0, 0, s.first.size - s.m, 0
     for k in range(first.size):
         start, end = column_start[k], column_start[k + 1]
         D, sign = value[start], 1.0
         if row[start] >= m:
             hub_diagonal(s, k)
-            D, sign = -D, -1.0
+            D, sign, hubs_left = -D, -1.0, hubs_left - 1
         if WEAK * first[k] >= D:
-            smallest = min(smallest, D / first[k] if first[k] > 0.0 else 0.0)
-            if tiny * first[k] >= D:
-                D = tiny * first[k]
-                if D == 0.0:
-                    D = 1.0
-                value[start] = sign * D
+            if hubs_left > 0 and sign > 0.0 and first[k] > 0.0 and number < most:
+                number += 1
+                delayed[number] = k
+                D += first[k]
+                value[start] = D
+            else:
+                smallest = min(smallest, D / first[k] if first[k] > 0.0 else 0.0)
+                if tiny * first[k] >= D:
+                    D = tiny * first[k]
+                    if D == 0.0:
+                        D = 1.0
+                    value[start] = sign * D
         inverse = sign / D
         # from the last row up: what is left of the column is still that of S
         for p in range(end - 1, start, -1):
@@ -116,7 +147,68 @@ def eliminate(s, tiny):
                 value[target[u]] -= L * value[o]
                 u += 1
             value[p] = L
+    delayed[0] = number
+    return min(smallest, take_delayed(s)) if number > 0 else smallest
+
+
+@internal
+def take_delayed(s):
+    """Z and G of the delayed rows, this as its Cholesky factor, and their pivots behind all other
+    rows, as shares of their diagonals; returns the least of these."""
+    Z, G, number, smallest = s.delayed_columns, s.delayed_factor, s.delayed[0], 1.0
+    for j in range(number):
+        z = Z[j]
+        for k in range(z.size):
+            z[k] = 0.0
+        z[delayed_row(s, j)] = 1.0
+        substitute(s, s.value, z)
+    for i in range(number):
+        own = 1.0 / s.first[s.delayed[1 + i]]
+        for j in range(i + 1):
+            total = (own if i == j else 0.0) - Z[j, delayed_row(s, i)]
+            for k in range(j):
+                total -= G[i, k] * G[j, k]
+            G[i, j] = sqrt(max(total, ROUNDING * own)) if i == j else total / G[j, j]
+    for i in range(number):
+        w = s.delayed_room
+        total = Z[i, delayed_row(s, i)]
+        for j in range(number):
+            w[j] = Z[i, delayed_row(s, j)]
+            for k in range(j):
+                w[j] -= G[j, k] * w[k]
+            w[j] /= G[j, j]
+            total += w[j] * w[j]
+        s.delayed_pivot[i] = 1.0 / (total * s.first[s.delayed[1 + i]])
+        smallest = min(smallest, s.delayed_pivot[i])
     return smallest
+
+
+@internal
+def delayed_row(s, j):
+    """The j-th row whose pivot is delayed."""
+    return s.row[s.column_start[s.delayed[1 + j]]]
+
+
+@internal
+def back(s, x):
+    """x <- K^-1 x by the factors and, of delayed rows, by Z and G."""
+    substitute(s, s.value, x)
+    number = s.delayed[0]
+    if number == 0:
+        return
+    Z, G, w = s.delayed_columns, s.delayed_factor, s.delayed_room
+    for i in range(number):
+        w[i] = x[delayed_row(s, i)]
+        for k in range(i):
+            w[i] -= G[i, k] * w[k]
+        w[i] /= G[i, i]
+    for i in range(number - 1, -1, -1):
+        for k in range(i + 1, number):
+            w[i] -= G[k, i] * w[k]
+        w[i] /= G[i, i]
+    for i in range(number):
+        for k in range(x.size):
+            x[k] += Z[i, k] * w[i]
 
 
 @internal
@@ -152,15 +244,15 @@ def substitute(s, value, x):
 def solve(s, x):
     """x <- S^-1 x with the last factorisation, refined where S was nearly singular, or was."""
     if s.status[0] == SOUND:
-        substitute(s, s.value, x)
+        back(s, x)
         return
     copy_to(s.r, x)
     b = s.r
-    substitute(s, s.value, x)
+    back(s, x)
     for _ in range(REFINEMENTS):
         copy_to(s.r2, b)
         residual(s, x, s.r2)
-        substitute(s, s.value, s.r2)
+        back(s, s.r2)
         change, size = 0.0, 0.0
         for k in range(s.m):
             x[k] += s.r2[k]
@@ -215,6 +307,8 @@ def smallest_pivot(s):
         place = s.column_start[k]
         if s.row[place] < s.m:
             smallest = min(smallest, s.value[place] / s.first[k])
+    for j in range(s.delayed[0]):
+        smallest = min(smallest, s.delayed_pivot[j])
     return smallest
 
 

@@ -20,6 +20,7 @@ NONE, BAUMGARTE, PROJECTION = 0, 1, 2  # stabilisation
 OUTSIDE, LENGTH, ANGLE, SPEED, RATE, MAGNITUDE = 0, 1, 2, 3, 4, 5  # scale_kind
 N_STORED = 3
 N_MEM = 4  # columns of `mem` that all elements have, see contract.py
+DELAYED = 64  # rows whose pivots may wait for those of hubs, at most
 COMPONENTS = {".x": 0, ".y": 1, ".z": 2}  # of a channel of three, in its name
 
 
@@ -194,6 +195,13 @@ class Scene(Model):
     value: A1  # (places) S = J M^-1 J^T, then its factors
     first: A1  # (n_x) its diagonal, in elimination order
     through: A1  # (m) what of the diagonal acts through hubs
+    # of rows whose pivot waits for the hubs (assemble/linear.py), R at most: their number, and
+    # when they are eliminated; Z; the Cholesky factor of G; what is left of them; room
+    delayed: I1  # (1 + R)
+    delayed_columns: A2  # (R, n_x)
+    delayed_factor: A2  # (R, R)
+    delayed_pivot: A1  # (R)
+    delayed_room: A1  # (R)
     x: A1  # (n_x) right-hand side, then solution
     r: A1  # (n_x) refinement
     r2: A1  # (n_x)
@@ -248,6 +256,7 @@ def scene(model: Model) -> Scene:
     rows = m + len(model.redundant)
     elements = int(np.sum(model.beam[:, 1] - 1))
     loops = 1 if model.near_rows > 0.0 else 0
+    waiting = min(m, DELAYED) if n_x > m else 0
     shared = len(model.redundant) if model.shared_out else 0
     rubs = len(model.rubbing)
     whose = len(model.con) if rubs else 0
@@ -271,6 +280,9 @@ def scene(model: Model) -> Scene:
         (("value",), (len(model.row),)),
         (("first", "x", "r", "r2"), (n_x,)),
         (("through",), (m,)),
+        (("delayed_columns",), (waiting, n_x)),
+        (("delayed_factor",), (waiting, waiting)),
+        (("delayed_pivot", "delayed_room"), (waiting,)),
         (("aside",), (10, max(n_y, model.n_v + m + 1))),
         (("root", "part_root"), (3 * loops, n_x)),
         (("kept_rows",), (4 * loops, 6 * slots)),
@@ -297,6 +309,7 @@ def scene(model: Model) -> Scene:
         tab=model.tab.copy(),  # scratch, and what functions are held on
         watch_at=model.watch_at.copy(),  # clocks are started in it
         status=np.zeros(9, np.int64),
+        delayed=np.zeros(1 + waiting, np.int64),
     )
     made.X[:, [3, 7, 11]] = 1.0
     made.X[:, 2] = model.depth

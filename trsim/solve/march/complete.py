@@ -146,6 +146,7 @@ def complete(s, r, b, setting, method):
                 b.h, b.built = shorter, 0
                 b.t1 = reached(setting, b.t + b.h + beyond)
             else:
+                b.halved = 0  # the middle was that of another step, perhaps behind this end
                 call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
                 copy_to(b.y1, b.y2)
                 b.t1 = reached(setting, b.t + theta * h)

@@ -37,6 +37,8 @@ def keep_roots(s, roots):
     for k in range(s.first.size):
         D = s.value[s.column_start[k]]
         roots[k] = sqrt(D / s.first[k]) if D * s.first[k] > 0.0 else 0.0
+    for j in range(s.delayed[0]):
+        roots[s.delayed[1 + j]] = sqrt(max(s.delayed_pivot[j], 0.0))
 
 
 @internal

@@ -20,7 +20,7 @@ all derivatives are differences, many columns at a time [CurtisPowellReid1974].
 """
 
 from trsim.assemble.beams import node_products
-from trsim.assemble.linear import factorise, substitute
+from trsim.assemble.linear import factorise_alone, substitute
 from trsim.assemble.schur import hub_mass, hub_rows
 from trsim.elements.contract import N_BOOK
 from trsim.kernels.lazy import internal
@@ -86,7 +86,7 @@ def schur(s, r, b):
             pair = hub_mass(s, f, hub_rows(s, f, r.at_rows, b.across, pair))
     if s.n_r < s.n:
         node_products(s, r.at_rows, pair)
-    factorise(s)
+    factorise_alone(s)
     s.status[2] -= 1  # a run that goes on makes them again: not counted
     copy_to(b.schur, s.value)
 
