@@ -6,7 +6,9 @@ So the way of a step is looked at in parts that go no further than a ball is fro
 part of its own way through.  Between two looks a centre has come to the other side if its depth
 would have risen, by its rates at both, beyond what it takes to get there:
 
-    top = g_0 + r_0 x,  x = (g_1 - r_1 h - g_0) / (r_0 - r_1)       r_0 > 0 > r_1, by the part of a step
+    top = g_0 + r_0 x,    x = (g_1 - r_1 h - g_0) / (r_0 - r_1)        r_0 > 0 > r_1
+
+with h the part of the step between them, by which rates are.
 
 Then the step ends where that touch began.
 """
