@@ -119,7 +119,8 @@ def of_friction(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
 
 def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]:
     """Positions and velocities that had to give way to joints and drives."""
-    initial, rests = scenario.initial, METHODS[scenario.solver.method].rests
+    initial, static = scenario.initial, mechanism.stages.switches.static
+    rests = METHODS[scenario.solver.method].rests or (any(static) and static[0])
     p = projected(mechanism, as_joined(mechanism, begun) if rests else begun)
     asked = initial.settles or initial.values  # then it is moved on purpose
     if not asked and p.shift > MOVED * mechanism.model.size:
