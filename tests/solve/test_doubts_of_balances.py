@@ -36,6 +36,11 @@ def test_a_settlement_is_not_told(stiffness):
     assert said(HUNG.replace("K", str(stiffness))) == []
 
 
+def test_a_static_phase_that_begins_a_run():
+    text = HUNG.replace("K", "1000").replace("method: static_path, ", "")
+    assert said(text + "phases: [{name: rest, static: true, for: 0.1}]\n") == []
+
+
 def test_a_balance_that_is_far_away():
     """10 N on 20 N/m: half a metre."""
     (found,) = said(HUNG.replace("K", "20"))
