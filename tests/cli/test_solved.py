@@ -60,3 +60,19 @@ def test_there_and_back(told):
     assert re.search(r"from t = \S+ to 0\.4 s radau, as", line), line
     assert line.endswith("; 3 changes of method"), line
     assert np.count_nonzero(result.events.element == "solver") == 3
+
+
+def test_phases_that_are_all_static(told):
+    text = """
+gravity: [0, 0, 0]
+bodies: {b: {mass: 1, inertia: 1, at: [0, 0]}}
+joints: {g: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}}
+drives: {d: {joint: g, velocity: 0}}
+phases:
+  - {name: there, static: true, drive: {d: {velocity: 1}}, for: 2 ms}
+  - {name: back, STATIC drive: {d: {velocity: -1}}, for: 2 ms}
+solver: {end: 1}
+output: {every: 1 ms}
+"""
+    assert told(text.replace("STATIC", "static: true,"))[0] == "static_path"
+    assert told(text.replace("STATIC", ""))[0].startswith("auto: dop853")

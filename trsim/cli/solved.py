@@ -6,11 +6,17 @@ from trsim.scenario.methods import METHODS
 
 
 def solved(summary: dict[str, Any]) -> str:
-    """The method of a run, with the reason where `auto` changed it, and the CPU time."""
+    """The method of a run, with the reason where `auto` changed it, and the CPU time.
+
+    Where all phases are static, nothing was left to another method.
+    """
     from trsim.store.read import read
 
     run = read(summary["file"])
     method = str(run.group("solver")["method"])
+    phases = run.scenario.get("phases") or []
+    if phases and all(phase.get("static") for phase in phases):
+        method = "static_path"
     text = f"solved by {method}"
     if METHODS[method].chooses:
         text += f": {chosen(run, METHODS[method].files)}"

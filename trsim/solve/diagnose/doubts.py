@@ -22,6 +22,7 @@ friction   in several joints may not have been the only one that fits
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import pi
 from typing import Any
 
@@ -31,9 +32,9 @@ from numpy.typing import NDArray
 from trsim import elements
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import undecided
-from trsim.assemble.reduce import world_rates
+from trsim.assemble.reduce import closest, world_rates
 from trsim.elements.contract import STORED
-from trsim.elements.scene import PROJECTION, scene
+from trsim.elements.scene import PROJECTION, scene, workspace
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import of_drift
 from trsim.solve.diagnose.bar_scales import largest
@@ -52,6 +53,7 @@ from trsim.solve.march.openings import apart
 from trsim.solve.march.record import Record
 from trsim.solve.methods.rk4 import PER_RADIAN
 from trsim.solve.outcome import NOTHING, Outcome, natural, whose
+from trsim.solve.start.angles import follow
 from trsim.solve.start.bars import places
 from trsim.solve.start.consistent import Start
 from trsim.solve.start.projected import given_velocities, projected
@@ -60,6 +62,7 @@ from trsim.statuses import WELL
 Array = NDArray[np.float64]
 
 MOVED, TURNED = 1e-4, 1e-3  # of the mechanism's size, rad: more than the digits of a drawing
+FAR, TURNED_FAR = 0.1, 0.5  # the same: a balance is no longer the one next to a drawing
 VELOCITIES = (("velocity", "m/s", slice(3)), ("angular_velocity", "rad/s", slice(3, 6)))
 CHANGED = 1e-3  # of a speed that was given
 OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
@@ -116,7 +119,9 @@ def of_friction(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
 
 def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]:
     """Positions and velocities that had to give way to joints and drives."""
-    initial, p = scenario.initial, projected(mechanism, begun)
+    initial, static = scenario.initial, mechanism.stages.switches.static
+    rests = METHODS[scenario.solver.method].rests or (any(static) and static[0])
+    p = projected(mechanism, as_joined(mechanism, begun) if rests else begun)
     asked = initial.settles or initial.values  # then it is moved on purpose
     if not asked and p.shift > MOVED * mechanism.model.size:
         yield (
@@ -128,6 +133,8 @@ def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]
             f"bodies.{p.turn_body}: starts turned by {p.turn:.2g} rad against the drawing, to meet "
             "joints and drives at t = 0; correct the points"
         )
+    elif not asked and rests:
+        yield from of_balance(mechanism, begun)
     rows = undecided(scene(mechanism.model), begun.y)
     if rows:
         names = dict.fromkeys(mechanism.rows[k].rpartition(".")[0] for k in rows)
@@ -149,6 +156,25 @@ def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]
                     f"{vector(now, size)} {unit}, the nearest that joints and drives allow; give "
                     "velocities that fit together"
                 )
+
+
+def as_joined(mechanism: Mechanism, begun: Start) -> Start:
+    """A start as joints and drives alone change the drawing, without the balance behind it."""
+    y, _ = closest(workspace(mechanism.model), 0.0, follow(mechanism, mechanism.y0))
+    return replace(begun, y=y)
+
+
+def of_balance(mechanism: Mechanism, begun: Start) -> Iterator[str]:
+    """A balance to begin in that is far from the drawing: there may be a nearer one."""
+    p, size = projected(mechanism, begun), mechanism.model.size
+    if p.shift > FAR * size or p.turn > TURNED_FAR:
+        one, other = (f"{p.shift_body}", f"{p.shift:.2g} m away from where")
+        if p.shift <= FAR * size:
+            one, other = f"{p.turn_body}", f"turned by {p.turn:.2g} rad from how"
+        yield (
+            f"bodies.{one}: in the balance that the path begins in it is {other} it is drawn: is "
+            "it the one meant? draw it near that one"
+        )
 
 
 def twists(mechanism: Mechanism, begun: Start, rates: Array) -> dict[str, Array]:

@@ -186,6 +186,7 @@ def turned(
         return work, 0.0, no_jump()
     t, y = float(r.t), r.y
     energy, twists = total_energy(work, t, y), work.V.copy()
+    stored = float(stored_energy(work, t))
     model = stages.model(r.stage)
     for n in driven:
         take_hold(mechanism, work, model, r, n, int(before[n]))
@@ -200,7 +201,16 @@ def turned(
     done = total_energy(work, t, y) - energy
     y[work.n_q + work.n_v + work.jumps] += done
     settle(work, r, b, setting)
+    if of_rest(mechanism, before, r):  # speeds along a path have no energy, and no momentum
+        return work, float(stored_energy(work, t)) - stored, no_jump()
     return work, done, jump
+
+
+def of_rest(mechanism: Any, before: NDArray[np.int64], r: Record) -> bool:
+    """Whether the phase before an event and the one behind it are both static."""
+    switch, static = mechanism.stages.switches.phase, mechanism.stages.switches.static
+    ones = (int(before[switch]), int(r.stage[switch])) if switch >= 0 else (-1,)
+    return all(0 <= k < len(static) and static[k] for k in ones)
 
 
 def total_energy(work: Scene, t: float, y: Array) -> float:

@@ -1,13 +1,14 @@
 """What is told of a static path: its events, where it loses stability, how it ends."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
-from trsim.assemble.switches import UserEvent
+from trsim.assemble.switches import CHANNEL, TIME, UserEvent
 from trsim.laws.functions import HELD_OF_TABLE
 from trsim.solve.march import record as rec
 from trsim.solve.path.changes import CONTACT, PIECE, RIM, RUB, SENSE, WATCH, Change, Looks
@@ -20,6 +21,7 @@ Array = NDArray[np.float64]
 TOLD = 0.05  # of the largest force of a drive: what inertia may add untold
 SHOWN = 4  # coordinates of joints in a sentence
 FAR = {"angle": 0.5, "stroke": 0.1}  # rad, and of the mechanism's size: no longer where it was put
+NEXT_TO = 100.0  # of the time in which functions are differentiated: for rates of channels
 BOTH = 1.5  # signs beyond it are those of places where nothing is free
 
 
@@ -55,11 +57,28 @@ class Log:
         elif change.kind == SENSE:
             self.unstable(place, change)
         elif change.kind == WATCH:
+            change = self.with_rate(place, change)
             kind, row = self.happened(place, change)
         known = [line[:3].tolist() for line in self.events]
         if row >= 0 and [place.t, kind, row] not in known:
             self.count += 1
             self.events.append(np.array([place.t, kind, row, change.rate, np.nan, 0.0, 0.0]))
+
+    def with_rate(self, place: Place, change: Change) -> Change:
+        """The same with the rate of what is watched; where it has none of its own, as a channel,
+        that between the places a little ahead and behind along the path."""
+        event = self.looks.events[change.which]
+        if np.isfinite(change.rate):
+            return change
+        if event.entry == TIME and event.kind != CHANNEL:
+            return replace(change, rate=1.0)
+        h, eq, seen = NEXT_TO * self.eq.small, self.eq, []
+        for dt in (h, -h):
+            y = eq.at_time(eq.moved(place.y, dt * place.v), place.t, place.t + dt)
+            near = replace(place, t=place.t + dt, y=y, lam=place.lam + dt * place.lam_rate)
+            out = self.results.out(near, np.zeros(eq.n))
+            seen.append(self.looks.values(near, out)[change.which][0])
+        return replace(change, rate=(seen[0] - seen[1]) / (2.0 * h))
 
     def happened(self, place: Place, change: Change) -> tuple[float, int]:
         """A user event, or a limit of an element."""

@@ -14,6 +14,7 @@ from trsim.assemble.equations import poses
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED
 from trsim.solve.diagnose.linearised import mass_matrix
 from trsim.solve.path.place import Equations
+from trsim.solve.start.passages import Passages
 
 Array = NDArray[np.float64]
 
@@ -31,6 +32,7 @@ def relaxed(eq: Equations, t: float, y: Array) -> Array:
     w, n = eq.work, eq.n
     w.mem[w.contact, PHASE], w.mem[w.contact, IMPACT_SPEED] = UNLOCATED, 1.0
     lam, dt = eq.multipliers(t, y), 0.0
+    passages = Passages(eq.mechanism, w)
     for _ in range(STEPS):
         g = eq.left(t, y, lam)
         A = eq.matrix(t, y, lam)
@@ -46,11 +48,20 @@ def relaxed(eq: Equations, t: float, y: Array) -> Array:
         if far > FAR:
             dt *= SHRINK
             continue
-        y, lam = eq.moved(y, x[:n]), lam + x[n:]
+        part = free_part(eq, passages, y, x[:n])
+        y, lam = eq.moved(y, part * x[:n]), lam + part * x[n:]
+        if part < 1.0:
+            dt *= part
+            continue
         if far < NEAR and dt > 1e3:
             break
         dt *= GROW if far < 0.5 * FAR else 1.0
     return y
+
+
+def free_part(eq: Equations, passages: Passages, y: Array, dx: Array) -> float:
+    """The part of a step dx, in the axes of the solve, in which nothing is passed through."""
+    return passages.free(lambda part: eq.moved(y, part * dx), lambda: dx)
 
 
 def step_of(eq: Equations, A: Array, drag: Array, g: Array) -> Array:

@@ -17,11 +17,19 @@ from numpy.typing import NDArray
 from trsim.assemble.dense import least_squares, length, product, spaces, symmetric
 from trsim.assemble.equations import forces, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import along_rates, closest, displaced, jacobian, moves
+from trsim.assemble.reduce import (
+    along_rates,
+    closest,
+    displaced,
+    in_solve_axes,
+    jacobian,
+    moves,
+)
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED, ContactNumbers
 from trsim.elements.scene import Model, Scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.start.angles import remember
+from trsim.solve.start.passages import Passages
 
 Array = NDArray[np.float64]
 
@@ -125,6 +133,7 @@ def equilibrium(
     push, scale, load = 0.0, 1e-300, 1e-300
     changed, before = 0, 0.0  # the step at which the force last changed, and to what
     cut = 0  # steps that were cut short
+    passages = Passages(mechanism, model)
     F, J, Z = balance(model, y, free, mass)
     for count in range(STEPS + FAR):
         if Z.shape[1] == 0:
@@ -159,6 +168,7 @@ def equilibrium(
             judge(mechanism, values, Z @ vectors, max(load, acting), model, rigid)
             return y, left
         limit = min(1.0, reach / max(longest, turned, 1e-300))
+        limit *= free_part(passages, y, limit * dx)
         cut += int(limit < 1.0)
         y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))
         # against the motions allowed there: the old ones would see the constraints' forces
@@ -176,6 +186,16 @@ def equilibrium(
         "is there a load that nothing holds? drop `equilibrium` to start as drawn",
         ("initial", "equilibrium"),
     )
+
+
+def free_part(passages: Passages, y: Array, dx: Array) -> float:
+    """The part of a step dx, along the world-axes rates, in which nothing is passed through."""
+    model = passages.work
+
+    def place(part: float) -> Array:
+        return closest(model, 0.0, displaced(model, y, part * dx))[0]
+
+    return passages.free(place, lambda: in_solve_axes(model, dx))
 
 
 def check_stable(
