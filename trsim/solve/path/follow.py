@@ -23,21 +23,12 @@ from trsim.errors import ModelError
 from trsim.solve.march import record as rec
 from trsim.solve.march.features import next_time
 from trsim.solve.outcome import Block, Outcome, settings
+from trsim.solve.path import headings
 from trsim.solve.path.begin import begin, check
 from trsim.solve.path.between import Between
 from trsim.solve.path.changes import RUB, Change, Looks, bottoms, stability
 from trsim.solve.path.fold import fold
-from trsim.solve.path.headings import (
-    CLOSE_AHEAD,
-    anchored,
-    bend,
-    brief_step,
-    came_by,
-    directed,
-    kinked,
-    second_order,
-    way,
-)
+from trsim.solve.path.headings import anchored, bend, brief_step, came_by, directed, kinked, way
 from trsim.solve.path.let_go import Held, kept, why
 from trsim.solve.path.log import Log
 from trsim.solve.path.place import Equations, Place
@@ -146,11 +137,13 @@ class Path:
             trial = self.reached(place, to)
             if trial is not None and not self.looks.passed_over(place, trial):
                 changes = self.changed(trial)
-                off = 0.0 if brief or changes else bend(self.eq, place, trial)
+                off = bend(self.eq, place, trial) if not (brief or changes) else 0.0
                 if off <= (BENT_TURNING if self.eq.turning else BENT):
                     return trial, changes, h, brief > 0.0
                 bent.append((off, trial, changes, h))
                 if len(bent) > PARTED and off > STILL * bent[0][0]:
+                    break  # forces jump where it begins
+                if self.eq.turning and headings.by_rates([one[0] for one in bent]):
                     break
             elif bent:
                 break
@@ -159,7 +152,7 @@ class Path:
             brief = 0.0
             if h < SHORTEST * self.end:
                 return None
-        _, trial, changes, h = bent[0]  # forces jump where it begins, and no step tells more
+        _, trial, changes, h = bent[0]  # no shorter step tells more
         return trial, changes, h, False
 
     def first(self) -> Place:
@@ -220,8 +213,8 @@ class Path:
         found = None
         turns = eq.turning and place.came is not None and self.slides(place)
         if turns:
-            eq.anchor, eq.close = second_order(eq, place, h), None
-        if eq.close is not None and self.way(place.y, y) < CLOSE_AHEAD:
+            eq.anchor, eq.close = headings.second_order(eq, place, h), None
+        if eq.close is not None and self.way(place.y, y) < headings.CLOSE_AHEAD:
             far, eq.anchor, eq.close = eq.anchor, eq.close, None
             found = eq.solved(t, y, lam, place.inverse)
             eq.anchor = eq.anchor if found is not None else far

@@ -4,6 +4,8 @@ Where a path has a corner, or something turns round, directions are those of the
 What comes to rest there goes nowhere, and keeps the direction in which it came.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -114,12 +116,21 @@ def bend(eq: Equations, place: Place, trial: Place) -> float:
     and in the forces of joints and drives, of the largest: much where a touch has passed from one
     piece of a shape to another inside, or something went up and down again."""
     half, way = 0.5 * (trial.t - place.t), ways(eq, place.y, trial.y)
+    if eq.sleeves:  # whose friction turns, which rates of forces know nothing of
+        return 0.0
     if np.abs(way / eq.unit).max(initial=0.0) <= LEAST:
         return 0.0
     off = np.abs(way - half * (place.v + trial.v)) / eq.unit
     force = np.abs(trial.lam - place.lam - half * (place.lam_rate + trial.lam_rate))
     force *= np.asarray(eq.work.row_unit)[: eq.m] / (eq.work.size * eq.load)
     return float(max(off.max(initial=0.0), force.max(initial=0.0)))
+
+
+def by_rates(off: list[float]) -> bool:
+    """Whether it is the rates that are wrong, and not the step bent, by what it and its halves are
+    off: always half as much."""
+    halves = [b / a for a, b in pairwise(off)]
+    return len(halves) > 2 and all(0.4 < x < 0.6 for x in halves)
 
 
 def kinked(eq: Equations, place: Place, after: Place) -> bool:

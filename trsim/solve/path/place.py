@@ -132,8 +132,8 @@ class Equations:
         self.close: Array | None = None  # the same for places close ahead, see headings.py
         # surfaces that slide in several ways at once, whose direction turns
         self.surfaces = rough_surfaces(mechanism, w)
-        rubbed = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
-        self.turning = rubbed or (w.d == 6 and len(self.surfaces) > 0)
+        self.sleeves = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
+        self.turning = self.sleeves or (w.d == 6 and len(self.surfaces) > 0)
         self.stiffest = 0.0  # N*m, of the matrix made last
         self.frozen = False  # velocities of a state are as they are
         self.states = self.driven()  # see at_time
