@@ -154,3 +154,21 @@ def test_an_event_close_behind_a_row(beside):
     speed = line[2 + r.place["pin.velocity"][0] + 1]
     assert speed == pytest.approx(-0.0075, rel=1e-6)
     assert not [x for x in said(r) if "inertia" in x]
+
+
+def test_a_load_by_the_sign_of_a_rate():
+    """It is against the way of a path, whose speed is next to nothing, from the first row on."""
+    text = """
+bodies: {b: {mass: 2, inertia: 0.1, at: [0, 0]}}
+joints: {s: {type: prismatic, bodies: [ground, b], axis: [1, 0]}}
+sensors: {x: {joint: s}}
+forces: {f: {type: applied_load, body: b, direction: [-1, 0], force: "10*sign(x.rate) + 1"}}
+drives: {m: {joint: s, position: "0.3*sin(2*t) + 0.05*t"}}
+solver: {method: static_path, end: 0.9}
+output: {every: 0.05}
+"""
+    r = run(text)
+    rate = 0.6 * np.cos(2 * r.t) + 0.05
+    assert r["m.force"].ravel() == pytest.approx(10 * np.sign(rate) + 1, abs=1e-9)
+    assert r["m.force"].ravel() == pytest.approx(-r["f.load"][:, 0], abs=1e-9)
+    assert not [x for x in said(r) if "energy" in x]
