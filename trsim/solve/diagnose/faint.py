@@ -57,6 +57,12 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
         return
     finer = ADDS * tolerance * ALLOWED * tolerance * largest / off
     what = f"something vibrates{f' at about {w / (2.0 * pi):.2g} Hz' if w > 0.0 else ''}"
+    cure = (
+        "soften or damp what vibrates (`stiffness`, `compliance`, `damping`), or run it by itself"
+    )
+    if mechanism.mobility == 0:
+        what = "what is driven changes its acceleration within steps"
+        cure = "drives and curves of fewer or smoother pieces do"
     rubs = [i for i in mechanism.instances if i.row.rubs]
     if rubs:
         entry = f"{rubs[0].section}.{rubs[0].name}"
@@ -64,8 +70,7 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
     remedy = (
         f"`tolerance: {finer:.0e}` holds them"
         if finer >= FINEST
-        else "no tolerance holds them, since rounding is next; soften or damp what vibrates "
-        "(`stiffness`, `compliance`, `damping`), or run it by itself"
+        else f"no tolerance holds them, since rounding is next; {cure}"
     )
     yield (
         f"{known}, and by more over many: {what}, too little for a tolerance of "
