@@ -32,9 +32,9 @@ LOAD_METHOD = LOAD_ATTR if sys.version_info >= (3, 12) else opmap["LOAD_METHOD"]
 ATTRIBUTE_SHIFT = int(LOAD_METHOD == LOAD_ATTR)  # since 3.12 the last bit tells a method
 # the package's own files that decide what a function becomes
 COMPILER = (
-    "kernels/columns.py", "kernels/compiler.py", "kernels/fingerprint.py", "kernels/lazy.py",
-    "kernels/numba_own.py", "kernels/numba_quick.py", "kernels/packed.py", "kernels/pipeline.py",
-    "kernels/plain.py", "kernels/signatures.py", "kernels/way.py",
+    "kernels/buffer.py", "kernels/columns.py", "kernels/compiler.py", "kernels/fingerprint.py",
+    "kernels/lazy.py", "kernels/numba_own.py", "kernels/numba_quick.py", "kernels/packed.py",
+    "kernels/pipeline.py", "kernels/plain.py", "kernels/signatures.py", "kernels/way.py",
 )  # fmt: skip
 # told by their names: they belong to Python, numpy or numba, whose versions are in every key
 OF_OTHERS = frozenset({"builtins", "cmath", "math", "operator", "numpy", "numba"})

@@ -27,6 +27,7 @@ from trsim.laws.surfaces import PLANE, PROFILE
 
 Array = NDArray[np.float64]
 
+SURFACES = ("surface", "outline")  # travel of what touches at a place that is sought
 PART = 0.2  # of the way through: what a ball is moved on between two looks, beside its gap
 BEHIND = 0.5  # of the way through: a depth that turned round beyond it is one of the other side
 LOOKS = 200  # at the way of one step; it ends where they do
@@ -39,7 +40,7 @@ class Passages:
     def __init__(self, mechanism: Mechanism, work: Scene) -> None:
         self.work = work
         rows = [e for e in work.contact.tolist()
-                if mechanism.instances[e].element.key == "surface_contact"]  # fmt: skip
+                if mechanism.instances[e].row.travel in SURFACES]  # fmt: skip
         ways = {int(e): way_through(Own(work, e)) for e in rows}
         self.ways = {e: way for e, way in ways.items() if 0.0 < way < inf}
 
