@@ -40,7 +40,7 @@ def ways(eq: Equations, y: Array, y1: Array) -> Array:
 
 def directed(eq: Equations, place: Place, every: float) -> Place:
     """The start with friction against the way it is going to go."""
-    if not eq.rubs:
+    if not eq.directed:
         return place
     first, h = slice(eq.work.n_q, eq.work.n_q + eq.n), FIRST * every
     while True:

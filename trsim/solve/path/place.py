@@ -112,9 +112,9 @@ class Equations:
 
     def __init__(self, mechanism: Mechanism, begun: Any) -> None:
         self.mechanism = mechanism
-        model, rubs = sliding(mechanism)
+        model, self.rubs = sliding(mechanism)
         # what is a function of rates may ask for their signs alone, as friction does
-        self.rubs = rubs or len(model.rated) > 0
+        self.directed = self.rubs or len(model.rated) > 0
         self.work: Scene = scene(model)
         w = self.work
         w.mem[:], w.branch[:] = begun.mem, begun.branch
