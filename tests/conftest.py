@@ -2,14 +2,17 @@
 
 import compileall
 import gc
+import io
 import os
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 # as the command does, before numpy is imported: workers side by side would share the processors
 # with threads of BLAS that wait by turning, and small matrices gain nothing from them
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import pytest
 from hypothesis import settings
 
 from trsim.kernels.lazy import PYTHON
@@ -34,3 +37,18 @@ def pytest_collection_finish():
     gc.collect()
     gc.freeze()
     gc.set_threshold(20_000, 20, 50)
+
+
+@pytest.fixture
+def at_once(monkeypatch):
+    """The rows of a dead run are read without a process of its own, which takes half a second."""
+    from trsim.store import resume
+
+    @contextmanager
+    def sender(part, wanted):
+        rows = io.BytesIO()
+        resume.send(part, wanted, rows)
+        rows.seek(0)
+        yield rows
+
+    monkeypatch.setattr(resume, "sender", sender)

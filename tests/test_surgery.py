@@ -13,7 +13,6 @@ import shutil
 import subprocess
 import sys
 from collections import Counter
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +26,7 @@ from tests.test_mutants import mutated
 from trsim.assemble.assemble import assemble
 from trsim.scenario.load import loads
 from trsim.solve import simulate as solver
-from trsim.store import checkpoint, resume
+from trsim.store import checkpoint
 from trsim.sweeps.ledger import Entry
 
 ROOT = Path(__file__).parent.parent
@@ -166,20 +165,6 @@ def broken_off(tmp_path_factory):
         patch.setattr(solver, "VISIT", 100)  # steps of a block
         cut(folder / "x.h5", scenario, assemble(scenario), 1)
     return folder
-
-
-@pytest.fixture
-def at_once(monkeypatch):
-    """The rows of a dead run are read without a process of its own."""
-
-    @contextmanager
-    def sender(part, wanted):
-        rows = io.BytesIO()
-        resume.send(part, wanted, rows)
-        rows.seek(0)
-        yield rows
-
-    monkeypatch.setattr(resume, "sender", sender)
 
 
 def archive(body, dice):

@@ -1,13 +1,9 @@
-import io
-from contextlib import contextmanager
-
 import pytest
 
 from tests import small
 from tests.store import outside
 from trsim.assemble.assemble import assemble
 from trsim.scenario.load import loads
-from trsim.store import resume
 from trsim.store.read import read
 
 
@@ -37,17 +33,3 @@ def running_part(tmp_path_factory):
     outside.blocks_until(process, 1.2)
     outside.killed(process)
     return folder / "runs/crank.h5.part"
-
-
-@pytest.fixture
-def at_once(monkeypatch):
-    """The rows of a dead run are read without a process of its own, which takes half a second."""
-
-    @contextmanager
-    def sender(part, wanted):
-        rows = io.BytesIO()
-        resume.send(part, wanted, rows)
-        rows.seek(0)
-        yield rows
-
-    monkeypatch.setattr(resume, "sender", sender)

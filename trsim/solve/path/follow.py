@@ -23,12 +23,22 @@ from trsim.errors import ModelError
 from trsim.solve.march import record as rec
 from trsim.solve.march.features import next_time
 from trsim.solve.outcome import Block, Outcome, settings
-from trsim.solve.path import headings
 from trsim.solve.path.begin import begin, check
 from trsim.solve.path.between import Between
 from trsim.solve.path.changes import RUB, Change, Looks, bottoms, stability
 from trsim.solve.path.fold import fold
-from trsim.solve.path.headings import anchored, bend, brief_step, came_by, directed, kinked, way
+from trsim.solve.path.headings import (
+    CLOSE_AHEAD,
+    anchored,
+    bend,
+    brief_step,
+    by_rates,
+    came_by,
+    directed,
+    kinked,
+    second_order,
+    way,
+)
 from trsim.solve.path.let_go import Held, kept, why
 from trsim.solve.path.log import Log
 from trsim.solve.path.place import Equations, Place
@@ -143,7 +153,7 @@ class Path:
                 bent.append((off, trial, changes, h))
                 if len(bent) > PARTED and off > STILL * bent[0][0]:
                     break  # forces jump where it begins
-                if self.eq.turning and headings.by_rates([one[0] for one in bent]):
+                if self.eq.turning and by_rates([one[0] for one in bent]):
                     break
             elif bent:
                 break
@@ -206,15 +216,13 @@ class Path:
 
         within: a way that is known to be long enough; then nothing else is asked."""
         eq, h = self.eq, t - place.t
-        y, lam = (
-            eq.at_time(eq.moved(place.y, h * place.v), place.t, t),
-            place.lam + h * place.lam_rate,
-        )
+        y = eq.at_time(eq.moved(place.y, h * place.v), place.t, t)
+        lam = place.lam + h * place.lam_rate
         found = None
         turns = eq.turning and place.came is not None and self.slides(place)
         if turns:
-            eq.anchor, eq.close = headings.second_order(eq, place, h), None
-        if eq.close is not None and self.way(place.y, y) < headings.CLOSE_AHEAD:
+            eq.anchor, eq.close = second_order(eq, place, h), None
+        if eq.close is not None and self.way(place.y, y) < CLOSE_AHEAD:
             far, eq.anchor, eq.close = eq.anchor, eq.close, None
             found = eq.solved(t, y, lam, place.inverse)
             eq.anchor = eq.anchor if found is not None else far
