@@ -45,6 +45,7 @@ OF_CONTACTS = (*SHARES, "between")
 # what tells records of this form from those of another one
 EVERY = ("form 1", *OF_CHANNELS, *OF_CONTACTS, str(EVENTS), str(POINTS))
 LEVEL = 6  # of gzip: records are many
+AT_ONCE = 1 << 20  # values of channels that are looked at together
 
 
 def record(run: Run, asked: Iterable[str] = ()) -> dict[str, Any]:
@@ -92,25 +93,57 @@ def of_channels(run: Run) -> dict[str, list[float]]:
     """The numbers OF_CHANNELS of every channel and component, as outputs.py defines them."""
     kept = {(peak.channel, peak.extreme): peak.value for peak in run.peaks}
     steps = {contact: run.steps(contact) for contact in run.contacts}
-    found = {}
-    for channel, size in run.sizes.items():
-        contact, _, own = channel.rpartition(".")
-        touch = steps.get(contact, {}).get(own)  # values at the accepted steps in touch
-        rows = run.channel(channel).reshape(run.rows, size)
-        for k, name in enumerate(components(channel, size)):
-            x = rows[:, k]
-            known_too = [x] if touch is None else [x, touch.reshape(len(touch), size)[:, k]]
-            peak = max([*map(_largest, known_too), kept.get((name, LARGEST), -np.inf)])
-            least = min([*(-_largest(-y) for y in known_too), kept.get((name, SMALLEST), np.inf)])
-            means = [np.mean(x), np.sqrt(np.mean(x**2)), np.std(x), x[-1]]
+    found: dict[str, list[float]] = {}
+    for channels in several(run):
+        names = [name for c in channels for name in components(c, run.sizes[c])]
+        rows, n = np.empty((run.rows, len(names)), order="F"), 0
+        at = {}
+        for channel in channels:
+            at[channel] = columns = slice(n, n := n + run.sizes[channel])
+            rows[:, columns] = run.channel(channel).reshape(run.rows, -1)
+        means, peak, least = by_columns(rows)
+        for channel, columns in at.items():
+            contact, _, own = channel.rpartition(".")
+            touch = steps.get(contact, {}).get(own)  # values at the accepted steps in touch
+            if touch is not None:
+                touch = touch.reshape(len(touch), -1)
+                peak[columns] = np.fmax(peak[columns], _largest(touch))
+                least[columns] = np.fmin(least[columns], -_largest(-touch))
+        for name, of_rows, high, low in zip(names, means.T.tolist(), peak, least, strict=True):
             # which of two zeros, 0.0 and -0.0, is the larger depends on the processor
-            found[name] = [*map(float, means), peak + 0.0, least + 0.0, peak - least]
+            most = max(float(high), kept.get((name, LARGEST), -np.inf)) + 0.0
+            fewest = min(float(low), kept.get((name, SMALLEST), np.inf)) + 0.0
+            found[name] = [*of_rows, most, fewest, most - fewest]
     return found
 
 
-def _largest(x: Array) -> float:
-    """The largest value of x (n) that is a number; -inf without any."""
-    return float(np.fmax.reduce(x, initial=-np.inf))
+def several(run: Run) -> Iterator[list[str]]:
+    """The channels, as many at a time as AT_ONCE values make."""
+    taken, n = [], 0
+    for channel, size in run.sizes.items():
+        taken.append(channel)
+        n += size * run.rows
+        if n > AT_ONCE:
+            yield taken
+            taken, n = [], 0
+    if taken:
+        yield taken
+
+
+def by_columns(rows: Array) -> tuple[Array, Array, Array]:
+    """Mean, rms, standard deviation and last value (4, N), largest (N) and smallest of each column.
+
+    rows (n, N), one column behind the other in memory: numpy then adds each as if it were alone.
+    """
+    square = rows**2
+    means = [rows.mean(axis=0), np.sqrt(square.mean(axis=0)), rows.std(axis=0), rows[-1]]
+    return np.array(means), _largest(rows), -_largest(-rows)
+
+
+def _largest(x: Array) -> Array:
+    """The largest value that is a number of each column of x (n, N); -inf without any."""
+    found: Array = np.fmax.reduce(x, axis=0, initial=-np.inf)
+    return found
 
 
 def _defined(section: Points) -> dict[str, Any]:
