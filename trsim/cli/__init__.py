@@ -1,5 +1,6 @@
 """The command line: `trsim run`, `trsim report`, ...  One file per command, imported when used."""
 
+import atexit
 import gc
 import os
 import signal
@@ -15,6 +16,8 @@ from trsim.version import __version__
 
 # imports make tens of thousands of objects that stay: collecting among them finds nothing
 gc.set_threshold(50_000)
+# nor does Python, which looks through all of them three times before a process ends
+atexit.register(gc.freeze)
 # numpy would start threads for matrices of a few dozen rows
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 

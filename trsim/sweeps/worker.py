@@ -5,6 +5,7 @@ arrive, and then how the case ended.  It ends with the process that began it, an
 of a terminal: that process knows what to do.
 """
 
+import gc
 import json
 import os
 import signal
@@ -29,6 +30,8 @@ def main(memory: int, job: str) -> None:
     loaded = import_module(module)
     run: Callable[..., dict[str, Any]] = getattr(loaded, name)
     getattr(loaded, "prepare", lambda: None)()
+    gc.freeze()  # what every case needs stays: nothing is found by looking it through for each
+    gc.set_threshold(20_000)
     if memory:
         limit_memory(memory)
 
