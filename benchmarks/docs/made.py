@@ -81,6 +81,7 @@ MADE: dict[str, Made] = {
     "windows": bench("windows"),
     "flexible_pendulum": bench("flexible_pendulum"),
     "sweeps": bench("sweeps", "trsim/sweeps"),
+    "dask": bench("dask", "trsim/sweeps", way="tables"),
     "startup": bench("startup", "trsim/kernels", "trsim/cli"),
     "certify": tested("cli/test_certify"),
     "user_events": tested("solve/test_user_events"),
