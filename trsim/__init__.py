@@ -4,6 +4,7 @@
     trsim.check(scenario)   what it describes, and what a run of it will meet
     trsim.run(scenario)     a run of it: a Result
     trsim.sweep(scenario)   many runs of it, side by side: a Sweep
+    trsim.merge(folders)    shards of a sweep made into one: a Sweep
     trsim.Result(file)      a result file
     trsim.Sweep(folder)     the folder of a sweep
 
@@ -19,6 +20,7 @@ TYPE_CHECKING = False  # of `typing`, which takes longer to import than all else
 if TYPE_CHECKING:
     from trsim.api.check import Checked as Checked
     from trsim.api.check import check as check
+    from trsim.api.merge import merge as merge
     from trsim.api.result import Result as Result
     from trsim.api.run import run as run
     from trsim.api.source import load as load
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 
 FROM = {
     "check": ("check", "Checked"),
+    "merge": ("merge",),
     "result": ("Result",),
     "run": ("run",),
     "source": ("load",),

@@ -22,9 +22,8 @@ atexit.register(gc.freeze)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # each a module of this package
-COMMANDS = ("init", "run", "sweep", "status", "report", "check", "statics", "show", "export",
-            "recover", "explain",
-            "schema", "bench")  # fmt: skip
+COMMANDS = ("init", "run", "sweep", "status", "merge", "report", "check", "statics", "show",
+            "export", "recover", "explain", "schema", "bench")  # fmt: skip
 EPILOG = f"Exit codes: {', '.join(f'{code} {told}' for code, told in EXIT_CODES.items())}."
 
 

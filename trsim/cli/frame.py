@@ -33,7 +33,13 @@ EXIT_CODES = {
     143: "interrupted by SIGTERM",
 }
 WORKED_ON = ("scenario", "run", "part")  # arguments that are one file
-READ = (*WORKED_ON, "runs", "scenarios", "folder")  # that may be result files, or hold some
+READ = (
+    *WORKED_ON,
+    "runs",
+    "scenarios",
+    "folder",
+    "folders",
+)  # that may be result files, or hold some
 
 
 class Answer(Listener):

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from trsim.errors import FileError, UsageError
+from trsim.store.lock import refuse_if_written
 from trsim.store.own import remove
 from trsim.store.target import FIGURES, HEADER, Kind, fresh, headed, replaceable
 from trsim.sweeps.ledger import WORD, Entry, in_a_line
@@ -71,6 +72,13 @@ def remove_unfinished(folder: Path) -> None:
                     remove(path, kind)
 
 
+def refuse_at_work(folder: Path, mine: Path | None = None) -> None:
+    """Raise FileError if a process makes a sweep in a folder; mine: the ledger of this one."""
+    for lock in folder.glob("ledger*.jsonl.lock"):
+        if (other := lock.with_name(lock.name.removesuffix(".lock"))) != mine:
+            refuse_if_written(other)
+
+
 def _of_a_start(path: Path) -> bool:
     """Whether a sweep that was killed before its plan was written may have left this."""
     if path.name == "cases":
@@ -103,6 +111,11 @@ def write_plan(folder: Path, plan: Plan, engine: str) -> None:
         "samples": plan.samples, "seed": plan.seed, "cases": cases,
         "numbers": list(plan.numbers), "sets": list(plan.sets),
     }  # fmt: skip
+    write_told(folder, told)
+
+
+def write_told(folder: Path, told: Mapping[str, Any]) -> None:
+    """plan.json, as `read_plan` gives it."""
     with fresh(folder / "plan.json", PLAN) as unfinished:
         text = json.dumps(told, ensure_ascii=False)
         unfinished.write_text(text, encoding="utf-8", newline="\n")

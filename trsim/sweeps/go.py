@@ -14,6 +14,7 @@ from trsim.store.target import LOCK, file_errors, make
 from trsim.sweeps.folder import (
     check_usable,
     read_plan,
+    refuse_at_work,
     remove_unfinished,
     write_index,
     write_plan,
@@ -99,9 +100,7 @@ def sweep_out(folder: Path, mine: Path | None = None) -> None:
     """Remove what processes that were killed left: locks beside results that are complete, and
     unfinished plans and indices, unless another shard may be writing one."""
     with suppress(FileError):
-        for lock in folder.glob("ledger*.jsonl.lock"):
-            if (other := lock.with_name(lock.name.removesuffix(".lock"))) != mine:
-                refuse_if_written(other)
+        refuse_at_work(folder, mine)
         remove_unfinished(folder)
     for lock in (folder / "cases").glob("*.h5.lock"):
         with suppress(FileError):  # of a case that is being run, or no lock

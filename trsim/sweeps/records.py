@@ -60,14 +60,18 @@ class Records:
 
     def add(self, text: str) -> str:
         """Put a record, as it was sent, behind the others; its place."""
+        return self.put(received(text), self.words)
+
+    def put(self, data: bytes, words: str) -> str:
+        """The same of a record as it is stored; words: digest of what was asked for."""
         if self.file is None:
             exists(self.path, RECORDS)  # whatever else has this name is left alone
             flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | system.O_NONBLOCK
             self.file = open(system.opened(self.path, flags), "ab")  # noqa: SIM115 - see close
-        data, begin = received(text), self.file.seek(0, os.SEEK_END)
+        begin = self.file.seek(0, os.SEEK_END)
         self.file.write(data)
         self.file.flush()
-        return str(Place(self.path.name, begin, len(data), self.words))
+        return str(Place(self.path.name, begin, len(data), words))
 
     def close(self) -> None:
         if self.file is not None:
@@ -91,6 +95,15 @@ class Sizes:
 
 def stored(folder: Path, at: Place, sha: str) -> dict[str, Any]:
     """A record.  Raises FileError where it is not there, or is not what it was."""
+    return _read(folder, at, sha)[1]
+
+
+def raw(folder: Path, at: Place, sha: str) -> bytes:
+    """The same as it is stored."""
+    return _read(folder, at, sha)[0]
+
+
+def _read(folder: Path, at: Place, sha: str) -> tuple[bytes, dict[str, Any]]:
     path = folder / at.file
     try:
         with path.open("rb") as file:
@@ -102,4 +115,4 @@ def stored(folder: Path, at: Place, sha: str) -> dict[str, Any]:
     if found is None:
         what = f"{path} is damaged from byte {at.begin} on"
         raise FileError(what, f"Remove {path.name}, and run the sweep again.", file=str(path))
-    return found
+    return data, found

@@ -20,6 +20,7 @@ import gzip
 import hashlib
 import json
 import math
+import zlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -186,7 +187,7 @@ def unpacked(data: bytes, sha: str) -> dict[str, Any] | None:
     """A stored record; None where it is not the one with this sha256."""
     try:
         text = gzip.decompress(data)
-    except (OSError, EOFError, ValueError):
+    except (OSError, EOFError, ValueError, zlib.error):
         return None
     if hashlib.sha256(text).hexdigest() != sha:
         return None

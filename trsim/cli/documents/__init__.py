@@ -14,6 +14,7 @@ from trsim.cli.documents.files import Report as Report
 from trsim.cli.documents.files import Show as Show
 from trsim.cli.documents.runs import Run as Run
 from trsim.cli.documents.runs import Statics as Statics
+from trsim.cli.documents.sweeps import Merge as Merge
 from trsim.cli.documents.sweeps import Status as Status
 from trsim.cli.documents.sweeps import Sweep as Sweep
 from trsim.cli.documents.words import Explain as Explain

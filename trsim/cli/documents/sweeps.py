@@ -65,3 +65,33 @@ class Status(Document):
     counts: dict[str, int]
     failed: list[Failed]
     wall_of_a_case: Number
+
+
+class LeftOut(TypedDict):
+    """A case whose result is not what its folder tells of.
+
+    case    its name
+    folder  where it is told of
+    why     in words
+    """
+
+    case: str
+    folder: str
+    why: str
+
+
+class Merge(Document):
+    """trsim merge.
+
+    folder    that was made
+    cases     of the plan
+    taken     how many were taken from the other folders now
+    counts    status -> how many cases have it
+    left_out  the cases that are left out
+    """
+
+    folder: str
+    cases: int
+    taken: int
+    counts: dict[str, int]
+    left_out: list[LeftOut]
