@@ -106,8 +106,9 @@ def test_as_if_one_machine_had_run_all(filed, calm, tmp_path, link):
     assert [need.why for _, need in needs(planned, output, "one")] == [""] * 4
     for case in study(output).cases:
         names = [folder / "cases" / case.file.name for folder in folders]
-        same = [name for name in names if name.exists() and name.samefile(case.file)]
-        assert len(same) == link
+        [name] = [name for name in names if name.exists()]
+        assert name.samefile(case.file) == link
+        assert name.stat().st_mtime_ns == case.file.stat().st_mtime_ns
         # the ledger tells of the file as it is: nobody has to look into it
         assert case.entry == entries(output)[case.name]
         assert case.entry.changed == case.file.stat().st_mtime_ns
@@ -166,6 +167,8 @@ def test_broken_off_and_gone_on_with(keep, filed, kept, tmp_path):
         if one.there
     }
     assert len(entries(output)) == 4
+    last.unlink()  # what its files say of themselves is enough, of records their folder is asked
+    assert done(folders[:1], output)[0] == (4 if keep == "all" else 2)
 
 
 def test_contradictions_are_refused_by_name(two, scenario, tmp_path):
@@ -190,20 +193,26 @@ def test_contradictions_are_refused_by_name(two, scenario, tmp_path):
         list(merge([folders[2]], tmp_path / "whole"))
 
 
+def lines(folder, *found):
+    """Add lines to a ledger."""
+    with (folder / "ledger-9of9.jsonl").open("a") as file:
+        file.writelines(json.dumps(entry._asdict()) + "\n" for entry in found)
+
+
+def died(case, at, reason=""):
+    return Entry(case.name, case.digest, "one", "crashed", reason, 3, "", 0, 0, at, 0.0, {})
+
+
 def test_of_several_the_best_is_taken(two, tmp_path):
     """A result before none, whichever came later; of two that failed the later."""
     planned, (one, other) = two
     first, second = planned.cases[0], planned.cases[1]
-    for folder, case, at, reason in (
-        (other, first, 3e9, "it died"), (one, second, 1.0, "early"), (other, second, 2.0, "late"),
-    ):  # fmt: skip
-        entry = Entry(case.name, case.digest, "one", "crashed", reason, 3, "", 0, 0, at, 0.0, {})
-        (folder / "cases" / f"{second.name}.h5").unlink(missing_ok=True)
-        with (folder / "ledger-9of9.jsonl").open("a") as file:
-            file.write(json.dumps(entry._asdict()) + "\n")
-    for name in ("ledger-2of2.jsonl",):  # in which the second is done
-        lines = (other / name).read_text().splitlines(keepends=True)
-        (other / name).write_text("".join(line for line in lines if second.name not in line))
+    ledger = other / "ledger-2of2.jsonl"  # in which the second is done
+    done_in = ledger.read_text().splitlines(keepends=True)
+    ledger.write_text("".join(line for line in done_in if second.name not in line))
+    (other / "cases" / f"{second.name}.h5").unlink()
+    lines(one, died(second, 1.0, "early"))
+    lines(other, died(first, 3e9), died(second, 2.0, "late"))
     for folders in ([one, other], [other, one]):
         output = tmp_path / f"whole of {folders[0].name}"
         done(folders, output)
@@ -215,6 +224,16 @@ def test_of_several_the_best_is_taken(two, tmp_path):
     assert study(later).named[first.name].status == "crashed"
     done([one], later)
     assert study(later).named[first.name].status == "done"
+
+
+def test_a_record_is_taken_before_none(kept, tmp_path):
+    planned, folders = kept
+    case, bad = planned.cases[0], tmp_path / "bad"
+    bad.mkdir()
+    shutil.copy(folders[1] / "plan.json", bad)
+    lines(bad, died(case, 3e9))
+    assert len(done([*folders, bad], tmp_path / "whole")[1]) == 4
+    assert study(tmp_path / "whole").named[case.name].status == "done"
 
 
 def test_what_is_not_what_the_ledger_tells_of_is_left_out(two, kept, tmp_path):
