@@ -46,6 +46,36 @@ def test_past_a_flat_place_reactions_have_no_extreme():
     assert "at t = " in text.replace("that of t = ", "at t = ")
 
 
+UNEVEN = """
+gravity: [0, -9.81]
+bodies:
+  left: {mass: 1, inertia: 0.01, at: [0, 0.1]}
+  coupler: {mass: 0, inertia: 0, at: [0.2, 0.2]}
+  right: {mass: 3, inertia: 0.08, at: [0.4, 0.1]}
+joints:
+  A: {type: revolute, bodies: [ground, left], at: [0, 0]}
+  C: {type: revolute, bodies: [left, coupler], at: [0, 0.2]}
+  D: {type: revolute, bodies: [coupler, right], at: [0.4, 0.2]}
+  B: {type: revolute, bodies: [ground, right], at: [0.4, 0]}
+initial: {A.rate: 10}
+solver: {end: 0.4, tolerance: 1e-9}
+output: {every: 0.1}
+"""
+
+
+@pytest.mark.parametrize("mass", [0, 0.5])
+def test_bodies_without_mass_or_inertia_pass_flat_places_too(mass):
+    """What links cranks that would turn apart has no mass to tell by; energy says how fast they
+    turn: of both about their pins and of the coupler, which goes round without turning."""
+    r = run(UNEVEN.replace("coupler: {mass: 0", f"coupler: {{mass: {mass}"))
+    (text,) = told(r)
+    assert "The motion is right" in text
+    inertia = 0.01 + 1 * 0.1**2 + 0.08 + 3 * 0.1**2 + mass * 0.2**2
+    work = 9.81 * (1 + 3 + 2 * mass) * (0.1 - r["left.position"][:, 1])
+    rate = np.sqrt(100 + 2 * work / inertia)
+    np.testing.assert_allclose(r["left.angular_velocity"][:, 2], rate, rtol=1e-7)
+
+
 def test_on_the_way_there_they_have():
     r = run(FLAT.format(end=0.3))
     assert not told(r)

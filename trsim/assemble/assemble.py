@@ -353,7 +353,7 @@ def build(
         measured=measured.address(),
         beside=beside.address(),
         plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
-        near=0.0 if len(of.light) else near(solver, rows, spans(at)),
+        near=near(solver, rows, spans(at)),
         near_rows=0.0 if len(of.light) else near_rows(solver, rows, spans(at)),
         looped=looped(instances, rows, spans(at)),
         judged=judged(instances),

@@ -39,6 +39,7 @@ from typing import Any
 
 from trsim.assemble.equations import (
     DERIVATIVE,
+    call_derivative,
     constraints,
     free_accelerations,
     in_world,
@@ -308,13 +309,31 @@ def at(s, t, y, d):
     free_accelerations(s)
     right_hand_side(s, False)
     solve(s, s.x)
-    for k in range(s.m):
-        mean[s.n_v + k] += 0.5 * s.x[k]
+    if s.lightened != 0:
+        without_what_is_light(s, t, place)
+    else:
+        for k in range(s.m):
+            mean[s.n_v + k] += 0.5 * s.x[k]
+        for f in range(1, s.n_r):
+            pull(s, f, s.x)
     for f in range(1, s.n_r):
-        pull(s, f, s.x)
         for c in range(s.d):
             mean[s.d * (f - 1) + c] += 0.5 * s.free[f, c]
     return pivot
+
+
+@internal
+def without_what_is_light(s, t, place):
+    """Accelerations of M in s.free, and half of their multipliers added to s.aside[MEAN], from x of
+    M + E (light.py).  The multipliers and the power of the evaluation itself stay."""
+    own, mean, power, failed = s.aside[WAY], s.aside[MEAN], s.zd[DRIVES], s.status[3]
+    for k in range(s.m):
+        own[k], s.lam[k] = s.lam[k], s.x[k]
+    call_derivative(s.lightened, s, t, place, s.aside[WAY])
+    for k in range(s.m):
+        mean[s.n_v + k] += 0.5 * s.lam[k]
+        s.lam[k] = own[k]
+    s.zd[DRIVES], s.status[3] = power, failed
 
 
 @internal

@@ -20,7 +20,7 @@ from trsim.assemble.instances import Column
 from trsim.assemble.linear import SINGULAR, smallest_pivot
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import project_positions
-from trsim.elements.scene import scene
+from trsim.elements.scene import Model, scene
 from trsim.errors import some
 from trsim.solve.diagnose.locked import dependent
 from trsim.solve.outcome import Outcome
@@ -41,7 +41,7 @@ GIVEN_IN_TOLERANCES = 30.0
 def of_extremes(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """Channels of joints whose extremes are chance, with the largest of them and its time."""
     model, r = mechanism.model, outcome.record
-    if not model.near_rows > 0.0 or not np.min(r.firm, initial=1.0) < FAR:
+    if not closes(model) or not np.min(r.firm, initial=1.0) < FAR:
         return
     regular = dependent(mechanism, 0.0, outcome.start.y)[1]
     least = min(FAR, (ROUNDING / model.tolerance) ** (2.0 / 3.0))
@@ -61,6 +61,11 @@ def of_extremes(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterat
         motion = "For" if astray(scenario, outcome) else "The motion is right; for"
         remedy = f"{motion} the forces give joints clearance or compliance"
         yield f"{sentence(mechanism, found)}  {remedy}"
+
+
+def closes(model: Model) -> bool:
+    """Whether rows of joints may come to depend on each other somewhere on the way."""
+    return bool(model.near_rows > 0.0 or len(model.looped))
 
 
 def sentence(mechanism: Mechanism, found: dict[str, tuple[float, float, float, str]]) -> str:

@@ -38,7 +38,7 @@ from trsim.elements.scene import PROJECTION, scene, workspace
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import of_drift
 from trsim.solve.diagnose.bar_scales import largest
-from trsim.solve.diagnose.chance import GIVEN, of_extremes, too_much_given
+from trsim.solve.diagnose.chance import GIVEN, closes, of_extremes, too_much_given
 from trsim.solve.diagnose.crossed import of_branches
 from trsim.solve.diagnose.faint import of_vibrations
 from trsim.solve.diagnose.mesh_error import of_meshes
@@ -333,7 +333,7 @@ def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[
     if too_much_given(scenario, outcome) and work > least and outcome.status in WELL:
         yield (
             f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
-            f"largest energy exchanged{brought_back(given, mechanism.model.near_rows > 0.0)}"
+            f"largest energy exchanged{brought_back(given, closes(mechanism.model))}"
         )
     apart = numbers.get("joints_open_relative", 0.0)
     if apart > OPEN and mechanism.model.stabilisation != PROJECTION:

@@ -56,7 +56,7 @@ from trsim.solve.march.passes import call_passes
 from trsim.solve.march.peaks import call_finish, call_sample
 from trsim.solve.march.phases import change_phases, latch
 from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS, SLOPE
-from trsim.solve.march.samples import firmness
+from trsim.solve.march.samples import firmness_of_extremes
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
 from trsim.solve.march.turns import BEYOND, BRIEF, beats_in, pulse, too_far, unseen
 from trsim.solve.march.unseen import errs_unseen
@@ -154,7 +154,7 @@ def complete(s, r, b, setting, method):
     if method[POLES_AT] > 0 and call_search(method[POLES_AT], s, r, b, setting, method) < NONE:
         return undone(r, worst, worst_rate, AT_POLE if r.pole > 0 else STRAYED)
     t1 = b.t1
-    b.firm[1] = firmness(s)
+    b.firm[1] = firmness_of_extremes(s)
     limits_to_measure(s, t1, b.y1, b.firm[1], b.rough[0])
     measure(s, t1, b.y1, r.work_projection + b.projected, r.energy_0)
     copy_to(b.out, s.out)
@@ -390,7 +390,7 @@ def accept(s, r, b, last):
     s.status[3] = 0
     stays = b.t1 - r.t <= SMALLEST * 2.2e-16 * b.t1
     r.same_time = r.same_time + 1 if stays else 0
-    r.t, r.least_pivot = b.t1, b.firm[1]
+    r.t, r.least_pivot = b.t1, b.firm[1] if s.near_rows > 0.0 else 1.0
     r.work_projection += b.projected
     copy_to(r.y, b.y1)
     copy_to(r.yd, b.K[last])

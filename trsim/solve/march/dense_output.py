@@ -14,7 +14,7 @@ from trsim.solve.march.calls import DENSE_AT, LAST_AT, call_dense, call_interpol
 from trsim.solve.march.earlier import either_step
 from trsim.solve.march.land import evaluate_inside
 from trsim.solve.march.record import BUFFERS, RECORD
-from trsim.solve.march.samples import firmness
+from trsim.solve.march.samples import firmness_of_extremes
 from trsim.solve.march.settle import answered, at_rest
 
 # rows are closed to rounding, which is felt 1 / pivot^1.5 times in what they share
@@ -108,7 +108,7 @@ def measure_in(s, r, b, earlier, at, theta):
     """
     step = either_step(r, b, earlier)
     measure_at(s, r, b, step, at, theta)
-    b.firm[0] = firmness(s)
+    b.firm[0] = firmness_of_extremes(s)
     if s.redundant.shape[0] == 0 or theta == 0.0:
         return
     least = min(PLAIN, (NOISE / s.tolerance) ** (2.0 / 3.0))

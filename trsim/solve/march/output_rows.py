@@ -32,7 +32,7 @@ def felt(s, b, setting, method):
     chosen = setting.fixed_step == 0.0 and method[STEP_AT] > 0  # and by whom: not scipy
     if b.restless > 0 and chosen:
         return True
-    if b.firm[0] >= FELT * max(1.0, s.tolerance / LOOSE) ** MORE:
+    if s.near_rows == 0.0 or b.firm[0] >= FELT * max(1.0, s.tolerance / LOOSE) ** MORE:
         return False
     return chosen and s.stabilisation == PROJECTION  # else rows are closed inside steps only
 

@@ -57,7 +57,7 @@ def restart(s, r, b, t):
     """Begin anew with the channels in s.out."""
     gather(s, b.full, s.out, r.sample[0])
     square(s, r, r.sample[0])
-    b.firm[0] = firmness(s)
+    b.firm[0] = firmness_of_extremes(s)
     known_extremes(s, r, b, t)
     for c in range(s.sought.size):
         r.slope[0, c] = r.sample[0, c]
@@ -247,6 +247,15 @@ def firmness(s):
     """How far rows are from depending on each other at the last evaluation: where they nearly do,
     what they carry is chance (chance.py).  1 of open chains, which have no such places."""
     return smallest_pivot(s) if s.near_rows > 0.0 else 1.0
+
+
+@internal
+def firmness_of_extremes(s):
+    """The same for what is told of extremes, with bodies without mass or inertia too.
+
+    What these are solved with makes every pivot small, so nothing that steps do depends on them.
+    """
+    return smallest_pivot(s) if s.looped.size > 0 else firmness(s)
 
 
 # --- polynomials between two neighbours: `ahead` samples are newer than the later of them --------

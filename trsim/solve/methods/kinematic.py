@@ -40,7 +40,7 @@ from trsim.elements.scene import N_STORED
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import all_finite, copy_to
 from trsim.solve.march.calls import BOOK, DENSE, INTERPOLATE, NO_STEP, STEP
-from trsim.solve.march.samples import firmness
+from trsim.solve.march.samples import firmness, firmness_of_extremes
 from trsim.solve.march.sides import side
 from trsim.solve.march.works import BEGAN, DONE, LONG, POWERS, SAME_TIME
 from trsim.solve.methods.displacements import turn
@@ -73,12 +73,12 @@ def step(s, r, b, setting, t, h):
     if nearly < 0.0:
         return NO_STEP
     evaluate(s, t + half, middle, K[MIDDLE])
-    b.firm[2] = firmness(s)
+    b.firm[2] = firmness_of_extremes(s)
     if s.sought.size > 0:  # extremes: with these channels there is less to look for
         measure(s, t + half, middle, r.work_projection, r.energy_0)
         copy_to(b.middle, s.out)
         b.halved = 1
-    inside = sqrt(b.firm[2])
+    inside = sqrt(firmness(s))
     go_on(s, (y, K[0]), (middle, K[MIDDLE]), half, y1)
     corrected = close(s, t + h, y1, b.y2)
     if corrected < 0.0:
