@@ -52,3 +52,31 @@ def test_it_is_given_back_at_an_event(at):
     assert given_back == pytest.approx([at], abs=1e-12)
     assert len(taken) == 2 and taken[0] < at < taken[1]
     assert np.all(r["block.velocity"][-1, :1] > 0.0)
+
+
+LOCKED = """
+gravity: [0, -9.81]
+bodies:
+  leg: {mass: 13.6, inertia: 0.9, at: [0.1, -0.5]}
+  up: {mass: 2, inertia: 0.02, at: [0.35, -0.1]}
+  lo: {mass: 2, inertia: 0.02, at: [0.3, -0.35]}
+joints:
+  trunnion: {type: revolute, bodies: [ground, leg], at: [0, 0]}
+  a: {type: revolute, bodies: [ground, up], at: [0.6, 0]}
+  b: {type: revolute, bodies: [up, lo], at: [0.4, -0.25]}
+  c: {type: revolute, bodies: [leg, lo], at: [0.1, -0.45]}
+sensors: {angle: {joint: trunnion}}
+forces:
+  spring: {type: spring_damper, bodies: [ground, lo], points: [[0.3, 0.1], [0.38, -0.26]],
+           stiffness: 800, damping: 20, free_length: 0.2}
+events: {stop: {when: angle, value: 5 deg, crosses: up, times: 1, do: {lock: [b]}}}
+solver: {end: 10, tolerance: 1e-10}
+"""
+
+
+def test_what_is_locked_at_rest_is_not_stiff():
+    """Quotients of two roundings were rates of 1e16 1/s there."""
+    r = run(LOCKED)
+    assert np.any(r.events[:, rec.EVENT_TIME] < 0.5)
+    assert np.abs(r["leg.angular_velocity"][-1]).max() < 1e-9
+    assert not len(changes(r)[0])

@@ -114,13 +114,15 @@ def change(s, r, b, method, load, rate):
 def explicit_rate(s, r, b, h):
     """rho, 1/s: how much the derivative changes with the state, in the units of the error.
 
-    0 where what changes is SEEN by no tolerance: of bodies at rest a quotient of two roundings.
+    0 where what changes is SEEN by no tolerance, and of bodies that rows hold altogether: at rest a
+    quotient of two roundings.
     """
     K, weight, away = b.K, b.weight, b.y2
     # r.y is the end of the step by now: the difference to the last stage is in K alone
     combined(K, FROM_LAST_STAGE, 0, away.size, away)
     top = bottom = 0.0
-    for c in range(away.size):
+    first = s.n_q + s.n_v if s.m == s.n_v else 0
+    for c in range(first, away.size):
         if weight[c] > 0.0:
             top += ((K[12, c] - K[11, c]) * weight[c]) ** 2
             bottom += (h * away[c] * weight[c]) ** 2
