@@ -162,7 +162,9 @@ def march(s, r, b, setting, methods, most):
         t, method = r.t, methods[r.method]
         if method[STEP_AT] == 0:
             return LOAD
-        if method[STIFF_AT] > 0 and stiffness_due(r) and smooth(s, r):
+        if s.n_v == s.m:  # nothing moves but rounding: what was stiff before is held
+            r.vibration = 0.0
+        elif method[STIFF_AT] > 0 and stiffness_due(r) and smooth(s, r):
             call_look_stiff(method[STIFF_AT], s, r, b)
         h = next_step(s, r, b, setting, method)
         if h < SMALLEST * 2.2e-16 * max(abs(t), setting.t_end * 1e-3):

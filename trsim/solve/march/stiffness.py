@@ -49,9 +49,8 @@ call_look_stiff = caller(LOOK_STIFF)
 @internal
 def smooth(s, r):
     """Whether accelerations are smooth in places and rates here: nothing touches, or touches only
-    begin or end far from here; no rows depend on others.  Where rows hold all there is (s.m of them)
-    nothing moves but rounding."""
-    if s.n_v == s.m or (s.status[6] != 0 and s.near_rows > 0.0):
+    begin or end far from here; no rows depend on others."""
+    if s.n_v == 0 or (s.status[6] != 0 and s.near_rows > 0.0):
         return False
     for c in range(s.contact.size):
         # what was found in flight holds in touch; before anything was found, touches that a nudge
