@@ -1,9 +1,11 @@
 """Warnings of sizes count grooves, profiles, pins in slots, links and ropes as places of a body."""
 
+import numpy as np
 import pytest
 
 from trsim.scenario.lint import lint
 from trsim.scenario.load import loads
+from trsim.scenario.plausible import rim
 
 # a disc with a bearing at its centre, of a radius of gyration of 71 mm
 DISC = """
@@ -38,6 +40,16 @@ JOINTS = {
     "rope": "  l: {type: rope, through: [{body: disc, at: [10 mm, 68 mm]}, "
     "{body: arm, at: [0.08, 0.2]}]}",
 }
+WHEEL = "  x: {type: prismatic, bodies: [ground, arm], axis: [1, 0], at: [0.05, -0.068]}\n"
+JOINTS |= {
+    "gear": "  l: {type: gear, joints: [d, a], radii: [0.068, 0.124]}",
+    "belt": "  l: {type: belt, joints: [a, d], radii: [0.01, 0.068]}",
+    "rack": WHEEL + "  l: {type: rack_and_pinion, joints: [d, x], radius: 0.068}",
+    "drum": "  l: {type: rope, through: [{body: disc, at: [10 mm, 0], radius: 68 mm, turn: left},"
+    " {body: arm, at: [0.08, 0.2]}]}",
+    "roller": "  l: {type: cam, bodies: [arm, disc], at: [10 mm, 0], radius: 68 mm, "
+    "curve: {at: [0, 0], points: [[-0.1, 0.068], [0, 0.0681], [0.1, 0.068]]}}",
+}
 PROFILE = f"""  c: {{type: surface_contact, contact: k,
      surface: {{body: disc, shape: profile, closed: true, at: [10 mm, 0], points: {PLACES}}},
      ball: {{body: arm, at: [0.08, 0.2], radius: 2 mm}}}}"""
@@ -59,6 +71,16 @@ def test_places_of_joints(kind):
     # and what is too small for them is told
     (note,) = notes(JOINTS[kind], inertia="1e-6")
     assert "its points lie up to 0.0" in note
+
+
+@pytest.mark.parametrize("axis", [None, (0, 0, -2), (1, 0, 0), (1, -2, 3)])
+def test_a_rim_lies_across_its_axis(axis):
+    way, centre = np.array(axis or (0, 0, 1)), (1.0, 2.0, -0.5)
+    places = np.array(list(rim(centre, 0.3, axis))) - centre
+    np.testing.assert_allclose(places @ way, 0, atol=1e-15)
+    np.testing.assert_allclose(np.linalg.norm(places, axis=1), 0.3)
+    np.testing.assert_allclose(places.sum(axis=0), 0, atol=1e-15)
+    assert abs(places[0] @ places[2]) < 1e-15
 
 
 def test_places_of_a_profile():

@@ -10,7 +10,7 @@ mass         lighter than a wire a hundred times as long as thick at 1 kg/m^3, h
 
 from collections.abc import Iterator
 from itertools import combinations
-from math import dist, sqrt
+from math import dist, hypot, sqrt
 from typing import Any
 
 from trsim import elements
@@ -134,6 +134,31 @@ def outline(shape: Any) -> list[tuple[float, ...]]:
         return []
 
 
+def rim(at: Any, radius: float | None, axis: Any = None) -> Iterator[tuple[float, ...]]:
+    """Four places around a centre, at a radius across an axis; z unless given."""
+    if not radius:
+        return
+    x, y, z = axis or (0.0, 0.0, 1.0)
+    length, flat = hypot(x, y, z), hypot(x, y)
+    one = (y / flat, -x / flat, 0.0) if flat > 0.0 else (1.0, 0.0, 0.0)
+    other = (y * one[2] - z * one[1], z * one[0] - x * one[2], x * one[1] - y * one[0])
+    for way, size in ((one, radius), (other, radius / length if length > 0.0 else radius)):
+        for side in (size, -size):
+            yield tuple(c + side * w for c, w in zip(at, way, strict=True))
+
+
+def wheels(scenario: Any, joint: Any) -> Iterator[tuple[str, Any, float]]:
+    """Body, hinge and radius of each wheel of a transmission whose radii are given."""
+    radii = getattr(joint, "radii", None) or (getattr(joint, "radius", None),)
+    hinges = [scenario.joints.get(name) for name in getattr(joint, "joints", ())]
+    bodies = [getattr(hinge, "bodies", ()) for hinge in hinges]
+    for k, (hinge, radius) in enumerate(zip(hinges, radii, strict=False)):
+        others = {body for m, held in enumerate(bodies) if m != k for body in held}
+        own = [body for body in bodies[k] if body not in others]  # the carrier is not a wheel
+        if radius and getattr(hinge, "at", None) is not None and len(own) == 1:
+            yield own[0], hinge, radius
+
+
 def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
     """Where joints and forces hold each body, as drawn."""
     found: dict[str, list[tuple[float, ...]]] = {}
@@ -153,6 +178,14 @@ def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
                 add(body, at)
         for place in getattr(joint, "through", ()):
             add(place.body, place.at)
+            for at in rim(place.at, place.radius):
+                add(place.body, at)
+        for body, hinge, radius in wheels(scenario, joint):
+            for at in rim(hinge.at, radius, getattr(hinge, "axis", None)):
+                add(body, at)
+        if len(getattr(joint, "bodies", ())) == 2 and getattr(joint, "at", None) is not None:
+            for at in rim(joint.at, getattr(joint, "radius", None)):  # a roller
+                add(joint.bodies[1], at)
         for at in outline(getattr(joint, "curve", None)):
             add(joint.bodies[0], at)
     for force in scenario.forces.values():
