@@ -83,6 +83,11 @@ def test_a_rim_lies_across_its_axis(axis):
     assert abs(places[0] @ places[2]) < 1e-15
 
 
+def test_places_of_a_mesh():
+    mesh = "  m: {type: gear_mesh, joints: [d, a], radii: [0.068, 0.124], stiffness: 1e6}"
+    assert not notes(force=mesh)
+
+
 def test_places_of_a_profile():
     assert not notes(force=PROFILE)
     (note,) = notes(force=PROFILE, inertia="1e-6")

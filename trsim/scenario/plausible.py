@@ -180,14 +180,15 @@ def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
             add(place.body, place.at)
             for at in rim(place.at, place.radius):
                 add(place.body, at)
-        for body, hinge, radius in wheels(scenario, joint):
-            for at in rim(hinge.at, radius, getattr(hinge, "axis", None)):
-                add(body, at)
         if len(getattr(joint, "bodies", ())) == 2 and getattr(joint, "at", None) is not None:
             for at in rim(joint.at, getattr(joint, "radius", None)):  # a roller
                 add(joint.bodies[1], at)
         for at in outline(getattr(joint, "curve", None)):
             add(joint.bodies[0], at)
+    for train in (*scenario.joints.values(), *scenario.forces.values()):
+        for body, hinge, radius in wheels(scenario, train):
+            for at in rim(hinge.at, radius, getattr(hinge, "axis", None)):
+                add(body, at)
     for force in scenario.forces.values():
         add(getattr(force, "body", None), getattr(force, "at", None))
         places = getattr(force, "points", None) or (getattr(force, "at", None),) * 2
