@@ -1,6 +1,7 @@
 """A load that jumps where a rate passes a value, and drives it back from both sides, as dry
 friction would: no function tells what holds it there, and the run ends with that."""
 
+import numpy as np
 import pytest
 
 from ..runs import run
@@ -68,3 +69,28 @@ def test_a_jump_of_a_place_does_not_hold_it(v):
     r = run(of(LOAD.format("-4*sign(x)"), v))
     period = 2 * 1.0 / 2 * 2  # out and back on both sides, at 2 m/s^2
     assert r["x.rate"][-1] == pytest.approx(v * (1 if 3 % period == 0 else -1), abs=1e-6)
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau", "auto"])
+def test_a_place_that_comes_to_rest_on_a_jump_is_told(method):
+    """It swings about 0, less and less, in ever shorter times."""
+    text = of(LOAD.format("-2 - 4*floor(x) - 40*x.rate"), 0.05, method=method)
+    r = run(text, "solver.tolerance=1e-5", fails=True)
+    assert r.outcome.reason.startswith("forces.drag.force: at t = ")
+    assert "what it depends on rests at a corner" in r.outcome.reason
+    assert np.abs(r["block.position"][-1]).max() < 1e-4
+    assert r.outcome.statistics["steps"] < 10000
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+def test_a_place_that_comes_to_rest_on_a_kink_goes_on(method):
+    r = run(of(LOAD.format("-200*x - 600*max(x, 0) - 60*x.rate"), 0.05, method=method))
+    assert np.abs(r["block.position"][-1]).max() < 1e-6
+
+
+@pytest.mark.parametrize("method", ["dop853", "auto"])
+def test_what_rests_where_nothing_pushes_takes_no_short_steps(method):
+    """Nudges to either side say that a sign is stiff beyond bounds: steps were 1e-7 s."""
+    r = run(of(LOAD.format("-5*sign(x.rate)"), 0.0, method=method))
+    assert np.abs(r["block.position"]).max() == 0.0
+    assert r.outcome.statistics["steps"] < 50

@@ -16,6 +16,7 @@ from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
+from trsim.solve.diagnose.blame import RESTS
 from trsim.solve.diagnose.poles import at_pole
 from trsim.solve.march import record as rec
 from trsim.solve.march.impulses import Jump, no_jump
@@ -341,8 +342,10 @@ def leapt(mechanism: Mechanism, r: Record) -> str:
 
 
 def slid(mechanism: Mechanism, r: Record) -> str:
-    """Which function would hold a rate where it jumps."""
-    name = next(f.name for f in mechanism.functions if f.offset == int(r.slid) - 1)
+    """Which function would hold a rate, or a place, where it jumps."""
+    name = next(f.name for f in mechanism.functions if f.offset == abs(int(r.slid)) - 1)
+    if r.slid < 0:
+        return f"{name}: at t = {float(r.t):.9g} s {RESTS}"
     return (
         f"{name}: at t = {float(r.t):.9g} s a rate reaches a value at which this jumps, and is "
         "driven back to it from both sides: it would stay there with a force that no function "

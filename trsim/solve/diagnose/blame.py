@@ -28,6 +28,11 @@ SHORT = 0.01  # of its length as drawn: an actuator that ends at nothing
 AHEAD = (1e-12, 1e-9, 1e-6, 1e-3)  # of the run: how far beyond a failure to look
 PLACES = ("F", "zd", "phi", "phi_t", "gamma")
 RANGE = "log or sqrt of something negative, asin or acos beyond 1, 1/0, a table that ends"
+RESTS = (
+    "what it depends on rests at a corner; where it jumps there, as sign, floor and comparisons "
+    "do, what is held by less than the jump is driven back from both sides, in ever shorter steps: "
+    "let it rise in a short way, as step(x, x0, f0, x1, f1) does"
+)
 
 
 def blamed(mechanism: Mechanism, t: float, y: Array, mem: Array) -> Instance | None:
@@ -111,12 +116,7 @@ def on_a_corner(mechanism: Mechanism, w: Any) -> str:
         places = w.held[row[HELD_FROM] : row[HELD_TO]]
         if row[SENSED] and np.any(w.tab[places] == FREE):
             name = next((f.name for f in mechanism.functions if f.offset == row[OFFSET]), "a load")
-            return (
-                f"{name}: what it depends on rests at a corner; where it jumps there, as "
-                "sign, floor and comparisons do, what is held by less than the jump is driven back "
-                "from both sides, in ever shorter steps: let it rise in a short way, as "
-                "step(x, x0, f0, x1, f1) does"
-            )
+            return f"{name}: {RESTS}"
     return ""
 
 

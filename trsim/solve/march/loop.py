@@ -222,7 +222,7 @@ def march(s, r, b, setting, methods, most):
         blurred(r, h)
         if r.torn > 0:
             return LEAPT
-        if r.slid > 0:
+        if r.slid != 0:
             return SLIDES
         if too_fast(s, r):
             return TOO_FAST

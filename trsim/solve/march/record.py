@@ -240,7 +240,8 @@ class Record(Packed):
     n_jolts: I8  # jumps of the rate of a rigid drive
     lost: I8  # 1: without projection, rows are open by as much as branches are apart  adrift.py
     torn: I8  # 1 + row of the rigid drive whose place has jumped: the run ends
-    slid: I8  # 1 + offset in tab of a function that holds a rate at a jump: the run ends
+    slid: I8  # 1 + offset in tab of a function that holds a rate at a jump, minus that of one that
+    # holds a place: the run ends
     pole: I8  # 1 + row of `pole`, what of a function has no value at `pole_t`: the run ends
     unproved: I8  # searches for an event in a step that gave up
     unfollowed: I8  # looks into a step in which more happened than is followed   sampled.py

@@ -72,6 +72,7 @@ THETA, PLACE, NEXT = range(3)  # of b.met
 LAST, TIMES, FAR = range(3)  # of r.chatter
 AHEAD = 1e-3  # of the next step: how far u is looked at behind a corner
 HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
+JUMPS = 0.5  # of the difference between two pieces ahead of a corner: as much at the corner itself
 OFTEN = 20  # corners met in a row within the error allowed: it is no longer located
 
 TURN = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, i8)
@@ -297,8 +298,10 @@ def turn(s, r, b, setting, method, changed):
             if b.met[n, THETA] <= 1.0:
                 if s.rated.shape[0] > 0 and slides(s, r, b, n, t1):
                     r.slid = 1 + s.feature[n, OFFSET]
+                before = s.tab[int(b.met[n, PLACE])]
                 s.tab[int(b.met[n, PLACE])] = b.met[n, NEXT]
-                chatters(s, r, b, setting, n, t1)
+                if often(s, r, b, setting, n, t1):
+                    leave(s, r, b, n, t1, before)
                 turned += 1
     if turned > 0 or changed > 0:
         for n in range(s.feature.shape[0]):
@@ -396,24 +399,78 @@ def swap(s, b):
 
 
 @internal
-def chatters(s, r, b, setting, n, t1):
-    """Free a corner that is met again and again within the error allowed: a rest on a corner."""
+def often(s, r, b, setting, n, t1):
+    """Whether a corner is met again and again within the error allowed: a rest on a corner."""
     place, chatter = int(b.met[n, PLACE]), r.chatter[n]
-    _, rate, _ = corner_at(s, n, place, t1)
+    rate, of_rates = corner_at(s, n, place, t1)[1], reads_rates(s, n, place, t1)
     fastest = 1e-300  # sensor
     for k in range(s.sensed.shape[0]):
         own, kind = abs(s.S[s.sensed[k, ENTRY], 1]), s.sensed[k, KIND]
         if kind > RATE_OF:
+            if not of_rates:
+                continue
             own, kind = own * r.length / r.speed, kind - RATE_OF
         fastest = max(fastest, own * (s.reach if kind in ANGLES else 1.0))
     allowed = setting.step_error * r.length
     within = fastest * (t1 - chatter[LAST]) < allowed
-    chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0
-    if chatter[TIMES] > OFTEN:
-        s.tab[place] = FREE
-        chatter[FAR] = abs(rate) / fastest * allowed
-        chatter[TIMES] = 0.0
-    chatter[LAST] = t1
+    chatter[TIMES], chatter[LAST] = chatter[TIMES] + 1.0 if within else 0.0, t1
+    if chatter[TIMES] <= OFTEN:
+        return False
+    chatter[FAR], chatter[TIMES] = abs(rate) / fastest * allowed, 0.0
+    return True
+
+
+@internal
+def reads_rates(s, n, place, t1):
+    """Whether u changes with a rate that a sensor tells of."""
+    before = corner_at(s, n, place, t1)[1]
+    turn_rates(s)
+    after = corner_at(s, n, place, t1)[1]
+    turn_rates(s)
+    return before != after
+
+
+@internal
+def turn_rates(s):
+    """The other sign for how fast rates change."""
+    for k in range(s.sensed.shape[0]):
+        if s.sensed[k, KIND] > RATE_OF:
+            s.S[s.sensed[k, ENTRY], 1] = -s.S[s.sensed[k, ENTRY], 1]
+
+
+@internal
+def leave(s, r, b, n, t1, before):
+    """Leave a corner free; where the function jumps there and drives u back from both sides, no
+    motion goes on from it.
+
+    before: the piece that ended there.  By what both pieces do to the acceleration of u differs at
+    a jump as much at the corner as ahead of it, at a kink next to nothing.
+    """
+    place, ahead = int(b.met[n, PLACE]), AHEAD * r.h
+    way = corner_at(s, n, place, t1)[1]
+    one = bend_on(s, r, b, n, place, (before, t1, 0.0, ahead))
+    other = bend_on(s, r, b, n, place, (b.met[n, NEXT], t1, 0.0, ahead))
+    if one * way > 0.0 > other * way:
+        far = bend_on(s, r, b, n, place, (before, t1, ahead, ahead))
+        far -= bend_on(s, r, b, n, place, (b.met[n, NEXT], t1, ahead, ahead))
+        if abs(one - other) > JUMPS * abs(far):
+            r.slid = -1 - s.feature[n, OFFSET]
+    s.tab[place] = FREE
+    set_poses(s, r.y)
+
+
+@internal
+def bend_on(s, r, b, n, place, held):
+    """u'' with the accelerations that a piece gives, a time after t1 on straight ways."""
+    s.tab[place], t1, later, ahead = held
+    for c in range(r.y.size):
+        b.y2[c] = r.y[c] + (later * r.yd[c] if c < s.n_q else 0.0)
+    evaluate(s, t1 + later, b.y2, b.K[1])
+    rate = corner_at(s, n, place, t1 + later)[1]
+    for c in range(r.y.size):
+        b.y2[c] += ahead * b.K[1, c]
+    set_poses(s, b.y2)
+    return (corner_at(s, n, place, t1 + later + ahead)[1] - rate) / ahead
 
 
 @internal

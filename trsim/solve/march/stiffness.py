@@ -19,6 +19,7 @@ that is no damping.
 from math import sqrt
 
 from trsim.assemble.equations import evaluate
+from trsim.assemble.features import HELD_FROM, HELD_TO, OFFSET, SENSED
 from trsim.assemble.projection import onto_rows
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.scene import PROJECTION
@@ -26,6 +27,8 @@ from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import copy_to
+from trsim.laws.corners import sensed
+from trsim.laws.functions import FREE
 from trsim.solve.march.accelerations import furthest, touches
 from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.methods.displacements import active, displace, w_index
@@ -49,9 +52,15 @@ call_look_stiff = caller(LOOK_STIFF)
 @internal
 def smooth(s, r):
     """Whether accelerations are smooth in places and rates here: nothing touches, or touches only
-    begin or end far from here; no rows depend on others."""
+    begin or end far from here; no rows depend on others; no function is left free on a corner."""
     if s.n_v == 0 or (s.status[6] != 0 and s.near_rows > 0.0):
         return False
+    for n in range(s.feature.shape[0]):  # what rests on a corner may rest on a jump
+        for k in range(s.feature[n, HELD_FROM], s.feature[n, HELD_TO]):
+            place = s.held[k]
+            free = s.feature[n, SENSED] > 0 and s.tab[place] == FREE
+            if free and sensed(s.tab, s.feature[n, OFFSET], place):
+                return False
     for c in range(s.contact.size):
         # what was found in flight holds in touch; before anything was found, touches that a nudge
         # does not end are looked at as they are
