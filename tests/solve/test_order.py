@@ -134,3 +134,27 @@ def test_independent_methods_agree(method):
     text, angle = torsion_pendulum(solver=f"method: '{method}', end: 0.2, tolerance: 1e-7")
     r = run(text)
     assert r["angle"] == pytest.approx(angle(r.t), abs=1e-5)
+
+
+def test_a_fall_needs_few_steps_of_order_two():
+    """Its first difference is that of the speed, and no error."""
+    r = run("""
+bodies: {ball: {mass: 1, inertia: 0.01, velocity: [3, 4]}}
+gravity: [0, -9.81]
+solver: {method: generalized_alpha, end: 0.3, tolerance: 1e-6}
+""")
+    assert r.outcome.statistics["steps"] < 30
+    np.testing.assert_allclose(r["ball.position"][:, 1], 4 * r.t - 4.905 * r.t**2, atol=1e-12)
+
+
+def test_what_bends_slowly_errs_by_no_more_than_is_asked():
+    """m v' = -c v over half of its time: v = exp(-c t / m)."""
+    r = run("""
+bodies: {block: {mass: 1, inertia: 0.01, velocity: [3, 0]}}
+joints: {slide: {type: prismatic, bodies: [ground, block], axis: [1, 0]}}
+forces: {oil: {type: joint_spring, joint: slide, damper: rate}}
+solver: {method: generalized_alpha, end: 0.5, tolerance: 1e-5}
+""")
+    length = r.outcome.record.length
+    error = r["block.position"][:, 0] - 3 * (1 - np.exp(-r.t))
+    assert np.abs(error).max() < 1e-5 * length

@@ -161,15 +161,21 @@ def estimate(s, r, b, setting, t, h):
 
     Errors of order 3 at a distance h add up to one of order 2.  Steps held to a local error would
     leave tolerance^(2/3) times the turns at the end; held to this, it is the tolerance times them.
+    A motion that turns by less than a radian in the whole run, as a fall does, has no more than the
+    local errors of all its steps: the second difference times the run's length.
     Since errors add up from turn to turn, the worst entry counts and not a mean over those at rest.
     Works feed nothing back, so theirs only add up.
     """
-    K, weight = b.K, b.weight
-    moved = 0.0
+    K, weight, ratio = b.K, b.weight, grown(r, h)
+    moved = bent = 0.0
     for c in range(r.y.size):
         if weight[c] > 0.0:
-            moved = max(moved, abs(h / 12.0 * (K[NEW, c] - r.yd[c]) * weight[c]))
-    ratio = grown(r, h)
+            by = K[NEW, c] - r.yd[c]
+            moved = max(moved, abs(by) * weight[c])
+            bent = max(bent, abs(by - ratio * (r.yd[c] - r.past[BEFORE, c])) * weight[c])
+    moved *= h / 12.0
+    if ratio > 0.0:
+        moved = min(moved, setting.t_end / 12.0 * bent)
     if ratio == 0.0 and held(s, r, h):
         halved(s, r, b, t, h)
     if ratio > 0.0 or held(s, r, h):
