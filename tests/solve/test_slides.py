@@ -72,13 +72,14 @@ def test_a_jump_of_a_place_does_not_hold_it(v):
 
 
 @pytest.mark.parametrize("method", ["dop853", "radau", "auto"])
-def test_a_place_that_comes_to_rest_on_a_jump_is_told(method):
-    """It swings about 0, less and less, in ever shorter times."""
-    text = of(LOAD.format("-2 - 4*floor(x) - 40*x.rate"), 0.05, method=method)
+@pytest.mark.parametrize("where, last", [("x", 0.0), ("x - 0.02*t", 0.06)])
+def test_a_place_that_comes_to_rest_on_a_jump_is_told(where, last, method):
+    """It swings about 0, less and less, in ever shorter times; or about what moves slowly."""
+    text = of(LOAD.format(f"-2 - 4*floor({where}) - 40*x.rate"), 0.05, method=method)
     r = run(text, "solver.tolerance=1e-5", fails=True)
     assert r.outcome.reason.startswith("forces.drag.force: at t = ")
     assert "what it depends on rests at a corner" in r.outcome.reason
-    assert np.abs(r["block.position"][-1]).max() < 1e-4
+    assert 0.0 < r["block.position"][-1, 0] + 1e-4 < last + 2e-4
     assert r.outcome.statistics["steps"] < 10000
 
 

@@ -400,41 +400,44 @@ def swap(s, b):
 
 @internal
 def often(s, r, b, setting, n, t1):
-    """Whether a corner is met again and again within the error allowed: a rest on a corner."""
+    """Whether a corner is met again and again within the error allowed: a rest on a corner.
+
+    What u changes by with the time alone is not an error of a sensor.
+    """
     place, chatter = int(b.met[n, PLACE]), r.chatter[n]
-    rate, of_rates = corner_at(s, n, place, t1)[1], reads_rates(s, n, place, t1)
+    rate, of_rates = corner_at(s, n, place, t1)[1], back(s, n, place, t1, RATE_OF)
+    of_sensors = 0.5 * abs(rate - back(s, n, place, t1, -1))
     fastest = 1e-300  # sensor
     for k in range(s.sensed.shape[0]):
         own, kind = abs(s.S[s.sensed[k, ENTRY], 1]), s.sensed[k, KIND]
         if kind > RATE_OF:
-            if not of_rates:
+            if of_rates == rate:
                 continue
             own, kind = own * r.length / r.speed, kind - RATE_OF
         fastest = max(fastest, own * (s.reach if kind in ANGLES else 1.0))
-    allowed = setting.step_error * r.length
-    within = fastest * (t1 - chatter[LAST]) < allowed
+    allowed = of_sensors / fastest * setting.step_error * r.length
+    within = abs(rate) * (t1 - chatter[LAST]) <= allowed
     chatter[TIMES], chatter[LAST] = chatter[TIMES] + 1.0 if within else 0.0, t1
     if chatter[TIMES] <= OFTEN:
         return False
-    chatter[FAR], chatter[TIMES] = abs(rate) / fastest * allowed, 0.0
+    chatter[FAR], chatter[TIMES] = allowed, 0.0
     return True
 
 
 @internal
-def reads_rates(s, n, place, t1):
-    """Whether u changes with a rate that a sensor tells of."""
-    before = corner_at(s, n, place, t1)[1]
-    turn_rates(s)
-    after = corner_at(s, n, place, t1)[1]
-    turn_rates(s)
-    return before != after
+def back(s, n, place, t1, beyond):
+    """The rate of u if sensors whose kind is beyond that went the other way."""
+    turn_back(s, beyond)
+    rate = corner_at(s, n, place, t1)[1]
+    turn_back(s, beyond)
+    return rate
 
 
 @internal
-def turn_rates(s):
-    """The other sign for how fast rates change."""
+def turn_back(s, beyond):
+    """The other sign for the rates of those sensors."""
     for k in range(s.sensed.shape[0]):
-        if s.sensed[k, KIND] > RATE_OF:
+        if s.sensed[k, KIND] > beyond:
             s.S[s.sensed[k, ENTRY], 1] = -s.S[s.sensed[k, ENTRY], 1]
 
 
