@@ -182,4 +182,10 @@ SWEEP = (  # keys of `sweep` that are no path: word, what it may be, meaning
     ("keep", "all | summary", "of every case: its result file, or its numbers only"),
     ("numbers", "list", "numbers of a run, as in `trsim show`, that are kept of every case too: "
      "peak:B.contact_force@0.3..0.5"),
+    ("until", "mapping of numbers of a run to widths", "of monte_carlo and sobol: samples are run "
+     "until half of the 95 % interval is no more than this: of the mean over cases, 2 % of it or "
+     "20 N; of sobol's indices, 0.05"),
+    ("refine", "mapping", "of a grid: `every: 8` runs each 8th value of its axes first, and those "
+     "between where neighbours differ in status, or in a number of a mapping `by` by more than "
+     "its width: {peak:B.contact_force: 5 %}"),
 )  # fmt: skip
