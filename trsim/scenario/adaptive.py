@@ -3,7 +3,8 @@
     until: {peak:B.contact_force: 2 %}    of monte_carlo: the mean over cases is as sure as this
     until: {peak:B.contact_force: 0.05}   of sobol: its indices are
     refine: {every: 8, by: {peak:B.contact_force: 5 %}}    of a grid: every 8th value first, and
-                                          those between where neighbours differ
+                                          those between where neighbours differ;
+              {every: {joints.A.clearance: 8}}    of one key alone, all values of the others
 
 The cases of the sweep are what they are without these (sweeps/adaptive.py chooses among them).
 """
@@ -40,9 +41,8 @@ Widths = tuple[tuple[str, Width], ...]  # word of a number (analyse/outputs.py),
 class Refine(NamedTuple):
     """A grid of which not every case is run."""
 
-    every: int  # so many values on the next one is run first
+    every: tuple[tuple[str, int], ...]  # key, which of its values are run first; of others all
     by: Widths  # besides the status
-    keys: tuple[str, ...]  # whose values are numbers in order; of others all are run
 
 
 def until(data: Any, method: str) -> Widths:
@@ -77,21 +77,33 @@ def refine(data: Any, method: str, axes: Mapping[str, tuple[Any, ...]]) -> Refin
     for key in data:
         if key not in (EVERY, BY):
             raise ScenarioError(f"unknown key {described(key)}", known(key, (EVERY, BY)), (key,))
-    every = data.get(EVERY)
-    if every is None:
-        hint = "`every: 8` runs each 8th value first."
-        raise ScenarioError(f"field required: {EVERY}", hint)
-    if not isinstance(every, int) or isinstance(every, bool) or not 2 <= every <= MOST:
-        raise ScenarioError(f"must be a whole number from 2 to {MOST}", path=(EVERY,))
     try:
         by = _widths(data.get(BY, {}))
     except ScenarioError as error:
         raise error.at(BY) from None
-    keys = tuple(key for key, values in axes.items() if in_order(values))
-    if not keys:
+    fitting = [key for key, values in axes.items() if in_order(values)]
+    if not fitting:
         what = "no key has values between which others lie"
         raise ScenarioError(what, "Give one at least three numbers in order: lin(a, b, n).")
-    return Refine(every, by, keys)
+    try:
+        return Refine(_every(data.get(EVERY), fitting), by)
+    except ScenarioError as error:
+        raise error.at(EVERY) from None
+
+
+def _every(value: Any, fitting: list[str]) -> tuple[tuple[str, int], ...]:
+    """Which values of a key are run first; a number is for all keys whose values are in order."""
+    if value is None:
+        raise ScenarioError("field required", "`every: 8` runs each 8th value first.")
+    wanted = value if isinstance(value, dict) and value else dict.fromkeys(fitting, value)
+    for key, n in wanted.items():
+        path = (key,) if wanted is value else ()
+        if key not in fitting:
+            what = f"{described(key)} has no values between which others lie"
+            raise ScenarioError(what, known(key, fitting), path)
+        if not isinstance(n, int) or isinstance(n, bool) or not 2 <= n <= MOST:
+            raise ScenarioError(f"must be a whole number from 2 to {MOST}", path=path)
+    return tuple(wanted.items())
 
 
 def in_order(values: Iterable[Any]) -> bool:

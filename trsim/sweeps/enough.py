@@ -31,6 +31,7 @@ from trsim.sweeps.choosing import Choosing, Part, Results, how_many
 FEWEST = 16  # cases that tell a standard deviation
 MORE, LEAST = 8, 8  # a batch is at least a MOREth of the cases so far, and so many
 ROWS = 32  # of the first design
+MANY = 6  # digits before or behind the point
 
 
 class Mean(NamedTuple):
@@ -120,8 +121,8 @@ def about(value: float, half: float) -> str:
     """A value and half its interval, to two digits of that."""
     if not math.isfinite(half):
         return "not known"
-    digits = 1 - math.floor(math.log10(half)) if half > 0.0 else 6
-    if not -6 <= digits <= 6:
+    digits = 1 - math.floor(math.log10(half)) if half > 0.0 else MANY + 1
+    if abs(digits) > MANY:
         return f"{value:.6g} +- {half:.2g}"
     return (
         f"{round(value, digits):,.{max(digits, 0)}f} +- {round(half, digits):,.{max(digits, 0)}f}"

@@ -7,10 +7,10 @@ or where
     |x - y| > width        of a share:  width = share * max(|x|, |y|)
 
 Neighbours are cases of one cell, its edges included, with no case between them along an axis, and
-the same values of the others.  A cell is halved along each axis along which two of it differ, as
-long as there is a value between.  The edges belong to it since a finer cell beside it may have
-shown there what its own corners did not: a boundary is followed however it runs.  What begins and
-ends between two neighbours that are alike is not found.
+the same values of the others.  A cell of which two differ is halved along each axis, as long as a
+value lies between.  Its edges belong to it since a finer cell beside it may have shown there what
+its own corners did not: so a boundary is followed.  What begins and ends between two neighbours
+that are alike is not found.  Of a key without `every` each value has cells of its own.
 """
 
 from collections.abc import Iterator
@@ -32,8 +32,8 @@ def refined(part: Part, results: Results) -> Choosing:
     assert rule is not None  # noqa: S101 - adaptive.rule
     own = [axis for axis in part.sweep.axes if not axis.same_as]
     shape = tuple(len(axis.values) for axis in own)
-    sides = [rule.every if axis.key in rule.keys else 0 for axis in own]
-    cells: list[Cell] = list(product(*map(coarse, shape, sides)))
+    every = dict(rule.every)
+    cells: list[Cell] = list(product(*(coarse(len(a.values), every.get(a.key, 0)) for a in own)))
     seen, order = Seen(shape, rule), np.arange(len(part.cases)).reshape(shape)
     while True:
         wanted = sorted({int(order[at]) for cell in cells for at in product(*cell)}
@@ -49,7 +49,9 @@ def refined(part: Part, results: Results) -> Choosing:
                     results.status(part.cases[k]),
                     numbers,
                 )
-        halved = [part_of for cell in cells for part_of in pieces(cell, seen.differing(cell))]
+        halved = [
+            half for cell in cells for half in (halves(cell) if seen.differ(cell) else [cell])
+        ]
         if len(halved) == len(cells):
             return _told(part, rule, int(seen.known.sum()))
         cells = halved
@@ -63,13 +65,12 @@ def coarse(n: int, every: int) -> list[tuple[int, int]]:
     return list(pairwise(ends))
 
 
-def pieces(cell: Cell, along: list[int]) -> Iterator[Cell]:
-    """A cell halved along some axes."""
-    halves = [
-        [(a, (a + b) // 2), ((a + b) // 2, b)] if k in along else [(a, b)]
-        for k, (a, b) in enumerate(cell)
-    ]
-    return product(*halves)
+def halves(cell: Cell) -> Iterator[Cell]:
+    """A cell halved along every axis on which a value lies between."""
+    sides = [
+        [(a, (a + b) // 2), ((a + b) // 2, b)] if b - a > 1 else [(a, b)] for a, b in cell
+    ]  # fmt: skip
+    return product(*sides)
 
 
 class Seen:
@@ -86,23 +87,20 @@ class Seen:
         self.ends[at] = self.words.setdefault(status, len(self.words))
         self.numbers[at] = numbers
 
-    def differing(self, cell: Cell) -> list[int]:
-        """The axes along which two neighbours of a cell differ and others lie between."""
+    def differ(self, cell: Cell) -> bool:
+        """Whether two neighbours of a cell differ."""
         block = tuple(slice(a, b + 1) for a, b in cell)
         known = self.known[block]
         at = np.argwhere(known)  # (cases, axes)
         ends, numbers = self.ends[block][known], self.numbers[block][known]
-        found = []
-        for k, (a, b) in enumerate(cell):
-            if b - a < 2:
-                continue
+        for k in range(len(cell)):
             others = np.delete(at, k, axis=1)
             order = np.lexsort((at[:, k], *others.T))
             row = (others[order[1:]] == others[order[:-1]]).all(axis=1)
             i, j = order[1:][row], order[:-1][row]
             if (ends[i] != ends[j]).any() or self._apart(numbers[i], numbers[j]):
-                found.append(k)
-        return found
+                return True
+        return False
 
     def _apart(self, x: Array, y: Array) -> bool:
         """Whether numbers (pairs, words) differ by more than their widths."""
