@@ -37,7 +37,7 @@ class Results:
 
     def __init__(self, folder: Path, known: Mapping[str, Entry]) -> None:
         self.folder, self.known = folder, known
-        self.units = dict[str, str]()
+        self.units, self.asked = dict[str, str](), dict[tuple[str, str], float]()
 
     def status(self, case: Case) -> str:
         return self.known[case.name].status
@@ -50,11 +50,14 @@ class Results:
         if word in entry.summary:
             value = entry.summary[word]
             return float(value) if isinstance(value, int | float) else math.nan
-        from trsim.analyse.outputs import scalar
+        # its file is older than the wish for the number
+        if (place := (case.name, word)) not in self.asked:
+            from trsim.analyse.outputs import scalar
 
-        with suppress(TrsimError):  # its file is older than the wish for the number
-            return scalar(self._run(entry), word)[0]
-        return math.nan
+            self.asked[place] = math.nan
+            with suppress(TrsimError):
+                self.asked[place] = scalar(self._run(entry), word)[0]
+        return self.asked[place]
 
     def check(self, cases: tuple[Case, ...], word: str, width: Width) -> None:
         """Check that cases have a number, and that its width is of its kind.
