@@ -12,14 +12,15 @@ from tests.analyse.studies import of_blocks
 from tests.sweeps import swings
 from trsim.analyse import sobol
 from trsim.analyse.cases import spared, unfinished
-from trsim.errors import ScenarioError, UsageError
+from trsim.errors import FileError, ScenarioError, UsageError
 from trsim.scenario.adaptive import Refine, Width, in_order
 from trsim.scenario.vary import sweep
 from trsim.statuses import NOT_NEEDED
 from trsim.sweeps import job, local
-from trsim.sweeps.choosing import Part
+from trsim.sweeps.choosing import Part, Results
 from trsim.sweeps.enough import about, mean, of_indices, of_means
 from trsim.sweeps.go import WHOLE, Shard, go
+from trsim.sweeps.ledger import Entry
 from trsim.sweeps.plan import faults, plan
 from trsim.sweeps.refined import refined
 from trsim.sweeps.study import study
@@ -124,6 +125,18 @@ def test_what_was_not_run_is_told(angles):
     assert [case.status for case in found.cases] == statuses
     assert spared(found) == [f"{n} of 100 cases were not needed and are left out"]
     assert not any(case.there or case.failed for case in found.cases[len(ran) :])
+
+
+def test_a_damaged_plan_is_told(angles, tmp_path):
+    text = (angles[0] / "sw/plan.json").read_text()
+    for old, new, what in (
+        ('"not_needed": true', '"not_needed": "no"', "does not say whether it was needed"),
+        ('"chosen": ["', '"chosen": [3, "', "chosen are no texts"),
+    ):
+        assert old in text
+        (tmp_path / "plan.json").write_text(text.replace(old, new))
+        with pytest.raises(FileError, match=what):
+            study(tmp_path)
 
 
 def test_the_same_cases_whoever_runs_them(angles, tmp_path):
@@ -263,6 +276,23 @@ def test_once_is_not_enough():
     )
 
 
+def test_few_numbers_that_are_alike_are_not_enough():
+    """Of the first 64 cases eight have a number, the same one."""
+    values = ([1.0] + [math.nan] * 7) * 40
+    batches, said = until(values, Width(0.01, "%", "1 %"))
+    assert [len(batch) for batch in batches[:4]] == [16, 16, 32, 64]
+    assert said.startswith(f"{sum(map(len, batches))} of 320 cases: w is 1 +- 0")
+
+
+def test_a_run_that_failed_has_no_number(tmp_path):
+    """Its peak is that of the time until then."""
+    entry = Entry("a", "d", "e", "done", "", 1, "c", 10, 20, 3.0, 0.5, {"w": 3.0, "v": None})
+    of = Results(tmp_path, {"a": entry, "b": entry._replace(status="failed")})
+    done, failed = SimpleNamespace(name="a"), SimpleNamespace(name="b")
+    assert of.number(done, "w") == 3.0
+    assert math.isnan(of.number(failed, "w")) and math.isnan(of.number(done, "v"))
+
+
 def test_too_few_samples_are_told():
     values = [0.0, 1.0] * 20
     batches, said = until(values, Width(0.05, "", "0.05"))
@@ -311,6 +341,15 @@ def test_rows_until_indices_are_sure(monkeypatch):
     assert sum(map(len, batches)) == 256
     assert said.startswith("all 256 cases: ") and "not reached, more `samples`" in said
     assert "no Sobol indices of w: w is the same" in indices_until([1.0] * 256, 0.1, 64)[1]
+
+
+def test_indices_that_moved_are_not_sure(monkeypatch):
+    """However narrow their intervals are: from row 64 on the two keys have changed places."""
+    monkeypatch.setattr(sobol, "RESAMPLES", 100)
+    table = np.array(design(512)).reshape(4, 512)
+    assert sum(map(len, indices_until(table.ravel(), 0.2, 512)[0])) == 4 * 128
+    table[2:, 64:] = table[[3, 2], 64:]
+    assert sum(map(len, indices_until(table.ravel(), 0.2, 512)[0])) == 4 * 256
 
 
 # --- refine ----------------------------------------------------------------------------------
