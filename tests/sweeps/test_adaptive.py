@@ -441,6 +441,13 @@ def test_numbers_that_differ():
     assert (11, 0) in grid(33, "done", numbers=lost, by=(("w", Width(1e9, "", "")),))[0]
 
 
+def test_a_slope_is_cut_along_itself():
+    """The other key, which has no influence, stays coarse."""
+    slope = {(i, j): math.exp(0.1 * i) for i in range(33) for j in range(33)}
+    ran, _ = grid(33, "done", numbers=slope, by=(("w", Width(0.3, "%", "")),))
+    assert ran == {(i, j) for i in range(0, 33, 2) for j in range(0, 33, 8)}
+
+
 def test_all_values_of_words_are_run(tmp_path):
     text = "sweep:\n  parameters.push: lin(1, 9, 9)\n  bodies.bob.mass: [2, 3]\n"
     text += "  refine: {every: 8}\n"

@@ -7,10 +7,12 @@ or where
     |x - y| > width        of a share:  width = share * max(|x|, |y|)
 
 Neighbours are cases of one cell, its edges included, with no case between them along an axis, and
-the same values of the others.  A cell of which two differ is halved along each axis, as long as a
-value lies between.  Its edges belong to it since a finer cell beside it may have shown there what
-its own corners did not: so a boundary is followed.  What begins and ends between two neighbours
-that are alike is not found.  Of a key without `every` each value has cells of its own.
+the same values of the others.  A cell is halved along each axis along which two of it differ: a
+slope is followed along itself.  Where no value lies between two that differ, there is a step, and
+the cell is halved along all axes, to follow the step across them.  Its edges belong to a cell since
+a finer one beside it may have shown there what its own corners did not.  What begins and ends
+between two neighbours that are alike is not found.  Of a key without `every` each value has cells
+of its own.
 """
 
 from collections.abc import Iterator
@@ -49,9 +51,7 @@ def refined(part: Part, results: Results) -> Choosing:
                     results.status(part.cases[k]),
                     numbers,
                 )
-        halved = [
-            half for cell in cells for half in (halves(cell) if seen.differ(cell) else [cell])
-        ]
+        halved = [half for cell in cells for half in halves(cell, seen.differing(cell))]
         if len(halved) == len(cells):
             return _told(part, rule, int(seen.known.sum()))
         cells = halved
@@ -65,11 +65,16 @@ def coarse(n: int, every: int) -> list[tuple[int, int]]:
     return list(pairwise(ends))
 
 
-def halves(cell: Cell) -> Iterator[Cell]:
-    """A cell halved along every axis on which a value lies between."""
+def halves(cell: Cell, along: list[int]) -> Iterator[Cell]:
+    """A cell halved along axes; along all of them where there is nothing between on one of these.
+
+    A cell that is alike, `along` no axis, is left as it is.
+    """
+    steps = any(cell[k][1] - cell[k][0] == 1 for k in along)
     sides = [
-        [(a, (a + b) // 2), ((a + b) // 2, b)] if b - a > 1 else [(a, b)] for a, b in cell
-    ]  # fmt: skip
+        [(a, (a + b) // 2), ((a + b) // 2, b)] if b - a > 1 and (steps or k in along) else [(a, b)]
+        for k, (a, b) in enumerate(cell)
+    ]
     return product(*sides)
 
 
@@ -87,20 +92,21 @@ class Seen:
         self.ends[at] = self.words.setdefault(status, len(self.words))
         self.numbers[at] = numbers
 
-    def differ(self, cell: Cell) -> bool:
-        """Whether two neighbours of a cell differ."""
+    def differing(self, cell: Cell) -> list[int]:
+        """The axes along which two neighbours of a cell differ."""
         block = tuple(slice(a, b + 1) for a, b in cell)
         known = self.known[block]
         at = np.argwhere(known)  # (cases, axes)
         ends, numbers = self.ends[block][known], self.numbers[block][known]
+        found = []
         for k in range(len(cell)):
             others = np.delete(at, k, axis=1)
             order = np.lexsort((at[:, k], *others.T))
             row = (others[order[1:]] == others[order[:-1]]).all(axis=1)
             i, j = order[1:][row], order[:-1][row]
             if (ends[i] != ends[j]).any() or self._apart(numbers[i], numbers[j]):
-                return True
-        return False
+                found.append(k)
+        return found
 
     def _apart(self, x: Array, y: Array) -> bool:
         """Whether numbers (pairs, words) differ by more than their widths."""
