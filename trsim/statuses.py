@@ -22,3 +22,4 @@ STATUSES: dict[Status, str] = {
     "interrupted": "ended by a signal; the file was closed and is named .part",
     "recovered": "copied out of a .part file",
 }
+NOT_NEEDED = "not needed"  # of a case of a sweep: what was asked is known without it

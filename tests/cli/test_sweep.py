@@ -61,6 +61,25 @@ def test_shards(scenario, trsim):
     assert [case.status for case in study("sw").cases] == ["done"] * 3
 
 
+def test_cases_that_are_not_needed(scenario, trsim, answer):
+    """Two ends that are alike: nothing between them is run, and all that is told is how many."""
+    text = scenario.read_text()
+    scenario.write_text(f"{text}sweep: {{{B}: [0.4 mm, 0.45 mm, 0.5 mm], refine: {{every: 2}}}}\n")
+    code, _, err = trsim("sweep", "crank.yaml", *FAST, "--explain")
+    assert code == 0 and "at most 3 of 3 cases are to be run" in err
+    assert "3 cases, 2 run in" in err and ": 2 done, 1 not needed" in err
+    said = "2 of 3 cases: neighbours that differ in status are next to each other on the axes"
+    assert said in err
+    assert trsim("status", "sw")[1].splitlines() == [
+        "sw: 3 cases of crank.yaml: 2 done, 1 not needed", said,
+    ]  # fmt: skip
+    assert answer("status", "sw")[1]["chosen"] == [said]
+    code, told = answer("sweep", "crank.yaml", *FAST)
+    assert (code, told["ran"], told["chosen"]) == (0, 0, [said])
+    code, _, err = trsim("sweep", "crank.yaml", *FAST, "--shard", "1/2", "--dry-run")
+    assert code == 2 and "choose cases from what all others gave" in err
+
+
 @pytest.mark.parametrize(
     "more, code, what",
     [

@@ -16,7 +16,7 @@ from trsim.analyse.cases import numbers
 from trsim.analyse.compare import curve, difference
 from trsim.analyse.outputs import scalar
 from trsim.analyse.scaling import Line
-from trsim.analyse.sobol import Index, Indices
+from trsim.analyse.sobol import Index, Indices, places
 from trsim.errors import FileError, UsageError
 from trsim.report import analysed, exponents, maps, spectra, studies
 from trsim.report.asked import Asked, file_name, words
@@ -25,7 +25,7 @@ from trsim.report.diagrams import bifurcated
 from trsim.report.display import compared
 from trsim.report.keys import in_words, readable
 from trsim.report.sobol import indexed
-from trsim.report.style import look
+from trsim.report.style import look, panels
 from trsim.store.read import read
 
 
@@ -232,6 +232,33 @@ def test_map(grid, tmp_path):
     np.testing.assert_array_equal(turned.values, place.values.T)
 
 
+def test_what_was_not_needed_is_drawn_as_what_is_near(grid, tmp_path):
+    """A map has the number and the end of the nearest case; no other figure has the case."""
+    word, spared = "peak:B.contact_force", grid.cases[2]
+    some = replace(spared, status="not needed", file=tmp_path / "none.h5")
+    some = replace(grid, cases=(*grid.cases[:2], some, replace(grid.cases[3], status="not needed")))
+    found = studies.draw(some, Asked(map=(word,)), [word], tmp_path)
+    table = rows(tmp_path / "map_peak_B_contact_force.csv")
+    assert [row[f"{word} [N]"] == "nan" for row in table] == [False, False, True, True]
+    assert found.lines == [
+        "2 of 4 cells were not run and have the colour of the nearest one that was",
+        "2 of 4 cases were not needed and are left out",
+    ]
+    assert [row["case"] for row in rows(tmp_path / "sweep.csv")] == ["done0", "jammed1"]
+    place = maps.gridded(some, numbers(some, [word])[word], None)
+    assert place.filled.tolist() == [[True, False], [True, False]]
+    np.testing.assert_array_equal(place.values[:, 0], place.values[:, 1])
+    assert place.ends == [["", ""], ["jammed", "jammed"]]
+    with look():
+        axes = panels(1)[1][0, 0]
+        maps.cells(axes, "ab", "cd", place.values, place.ends, place.filled)
+        assert len(axes.texts) == 2  # the numbers of those that were run
+        wide = np.zeros((2, 20), bool)
+        wide[1, 3:] = True
+        maps.cells(axes, ["a"] * 20, "cd", np.ones((2, 20)), [[""] * 20] * 2, wide)
+        assert len(axes.lines[0].get_xdata()) == 23  # a dot for each
+
+
 def test_maps_that_make_no_sense(grid, study, paths, tmp_path):
     word = "peak:B.contact_force"
     of = numbers(grid, [word])[word]
@@ -312,6 +339,19 @@ def test_sobol(paths, tmp_path):
     assert float(table[0]["total"]) == pytest.approx(total)
     assert float(table[1]["total"]) == 0.0
     assert found.lines[1].endswith("(ought to have none: noise)")
+
+
+def test_rows_that_were_not_needed_are_no_part_of_a_design():
+    from tests.analyse.studies import of_blocks
+
+    drawn = np.random.default_rng(3).random((16, 4))
+    plan = of_blocks(drawn[:, :2], drawn[:, 2:], ("a.b", "c.d"), 16)
+    cases = tuple(replace(case, status="done" if k % 16 < 8 else "not needed")
+                  for k, case in enumerate(plan.cases))  # fmt: skip
+    table = places(replace(plan, cases=cases), cases)
+    assert [[case.name for case in block] for block in table] == [
+        [f"{name}{k:04d}" for k in range(8)] for name in ("A", "B", "AB1_", "AB2_")
+    ]
 
 
 def test_the_title_of_sobol_indices_is_in_display_units(study):

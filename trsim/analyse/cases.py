@@ -6,6 +6,7 @@ on.  Only what no case has is an error.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from trsim.analyse.outputs import scalar
 from trsim.errors import FileError, TrsimError, UsageError, listed
-from trsim.statuses import WELL
+from trsim.statuses import NOT_NEEDED, WELL
 from trsim.store.once import Once
 from trsim.store.read import Run
 
@@ -108,6 +109,18 @@ def reasons(why: Mapping[str, str]) -> list[str]:
     for name, text in why.items():
         groups.setdefault(text, []).append(name)
     return [f"{listed(names)}: {text}" for text, names in groups.items()]
+
+
+def needed(study: Any) -> Any:
+    """The study without the cases that an adaptive sweep found not to be needed."""
+    cases = tuple(case for case in study.cases if case.status != NOT_NEEDED)
+    return study if len(cases) == len(study.cases) else replace(study, cases=cases)
+
+
+def spared(study: Any) -> list[str]:
+    """How many cases were not needed, where there are any."""
+    n = len(study.cases) - len(needed(study).cases)
+    return [f"{n:,} of {len(study.cases):,} cases were not needed and are left out"] if n else []
 
 
 def unfinished(study: Any) -> list[str]:

@@ -21,6 +21,7 @@ import numpy as np
 from trsim.analyse.interval import LEVEL
 from trsim.arrays import Array
 from trsim.errors import UsageError
+from trsim.statuses import NOT_NEEDED
 
 RESAMPLES = 500
 CASE = "case"  # the key of named cases
@@ -93,7 +94,8 @@ def places(study: Any, cases: Sequence[Any]) -> Any:
             if any(ab.values[k] != (b if k == key else a).values[k] for k in keys):
                 what = f"case {ab.name} is not {a.name} with the {key} of {b.name}"
                 raise UsageError(what, "Make the study anew with `method: sobol`.")
-    return table
+    # rows of which no case was asked for are no part of the design
+    return table[:, [any(case.status != NOT_NEEDED for case in row) for row in table.T]]
 
 
 def factors(study: Any, cases: Sequence[Any]) -> tuple[str, ...]:

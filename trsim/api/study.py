@@ -20,6 +20,7 @@ class Sweep:
 
     folder  of the sweep
     cases   each with `name`, `status`, `reason`, and `values` of what varies, SI
+    chosen  of `until` and `refine`: what came of them, and of how many cases, in words
     """
 
     def __init__(self, folder: str | os.PathLike) -> None:
@@ -27,6 +28,7 @@ class Sweep:
         self.folder = Path(folder)
         self.study: Study = study(self.folder)
         self.cases: tuple[Case, ...] = self.study.cases
+        self.chosen: tuple[str, ...] = self.study.chosen
 
     def __repr__(self) -> str:
         done = sum(case.there for case in self.cases)

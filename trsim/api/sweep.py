@@ -80,6 +80,7 @@ class Made(NamedTuple):
     counts: dict[str, int]  # status -> cases
     failed: CasesFailed | None
     told: tuple[str, ...]  # in a line each
+    chosen: tuple[str, ...]  # of them, what decided which cases were run
 
 
 def sweep(
@@ -226,9 +227,10 @@ def made(hears: Listener, work: Work) -> Made:
     said = ", ".join(f"{k} {status}" for status, k in counted.items())
     wall = time.monotonic() - began
     told = [f"{folder}: {len(mine)} cases, {n} run in {wall:.1f} s: {said or 'none'}"]
+    told += found.chosen
     if left := strays(folder, {*found.named}):
         told.append(f"note: of an earlier plan: {some(left, 3)} in {folder / 'cases'}")
-    return Made(n, counted, failures(folder, mine), tuple(told))
+    return Made(n, counted, failures(folder, mine), tuple(told), found.chosen)
 
 
 def failures(folder: Path, mine: Any) -> CasesFailed | None:
@@ -248,7 +250,9 @@ def run_cases(hears: Listener, work: Work) -> int:
     show, n = None, 0
     try:
         for one in going:
-            if isinstance(one, int):
+            if isinstance(one, int):  # of an adaptive sweep once for each batch
+                if show is not None:
+                    show.close()
                 show = hears.cases(str(work.folder), one)
                 continue
             n += 1

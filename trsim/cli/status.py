@@ -30,11 +30,15 @@ def command(answer: Answer, folder: str) -> None:
         "counts": told,
         "failed": [{"case": c.name, "status": c.status, "reason": c.reason} for c in bad],
         "wall_of_a_case": mean,
+        "chosen": list(found.chosen),
     }
     said = ", ".join(f"{n} {status}" for status, n in told.items())
     answer.put(f"{folder}: {len(found.cases)} cases of {found.source}: {said}")
     if told.get(MISSING) and mean:
-        answer.put(f"missing: about {told[MISSING] * mean:.0f} s of one processor")
+        about = "at most about" if found.adaptive else "about"
+        answer.put(f"missing: {about} {told[MISSING] * mean:.0f} s of one processor")
+    for text in found.chosen:
+        answer.put(text)
     for case in changed[:SHOWN]:
         answer.put(f"{case.name}: {case.reason}")
     for case in bad[:SHOWN]:

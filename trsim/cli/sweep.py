@@ -87,7 +87,8 @@ def command(
     """Run all cases of a SCENARIO with a `sweep:` or `cases:` block, or with --set KEY=[...].
 
     Writes FOLDER/cases/NAME.h5, a result file for each case, and FOLDER/index.csv, one row for
-    each.  With --keep summary FOLDER/summaries.jsonl.gz takes the place of the result files, with
+    each.  With `until` or `refine` in the `sweep:` only the cases that are needed run.  With
+    --keep summary FOLDER/summaries.jsonl.gz takes the place of the result files, with
     20 to 100 kB a case.  The same command again runs what is missing or changed, and nothing else.
     """
     from trsim.api.sweep import How, Work, assembled, keeping, made, planned_of
@@ -98,7 +99,8 @@ def command(
     how = How(**options)
     planned = keeping(planned_of(answer, scenario, sets, identity), how)
     folder = Path(output or f"runs/{Path(scenario).stem}")
-    answer.data |= {"folder": str(folder), "cases": len(planned.cases), "ran": 0, "counts": {}}
+    answer.data |= {"folder": str(folder), "cases": len(planned.cases), "ran": 0, "counts": {},
+                    "chosen": []}  # fmt: skip
 
     def counted(_: Any) -> None:
         answer.data["ran"] += 1
@@ -110,7 +112,7 @@ def command(
         assembled(answer, planned, work.part)
         return
     ended = made(answer, work)
-    answer.data["counts"] = ended.counts
+    answer.data |= {"counts": ended.counts, "chosen": list(ended.chosen)}
     answer.put(str(folder / "index.csv"))
     for text in ended.told:
         answer.say(text)
@@ -120,10 +122,12 @@ def command(
 
 def reasons(answer: Answer, work: Any, each: bool) -> None:
     """Say what would be run, and why."""
+    from trsim.sweeps.adaptive import check_whole
     from trsim.sweeps.go import needs
     from trsim.sweeps.needed import explained
 
     planned, folder = work.planned, work.folder
+    check_whole(planned, work.part.n)
     told = needs(planned, folder, work.identity, work.part)
     wanted = [(case, need) for case, need in told if need.why]
     answer.data["needed"] = [
@@ -132,4 +136,5 @@ def reasons(answer: Answer, work: Any, each: bool) -> None:
     if each:
         for one in answer.data["needed"]:
             answer.put(f"{one['case']}: {one['why']}")
-    answer.say(f"{len(wanted)} of {len(told)} cases are to be run")
+    most = "at most " if planned.adaptive else ""
+    answer.say(f"{most}{len(wanted)} of {len(told)} cases are to be run")

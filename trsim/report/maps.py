@@ -14,6 +14,7 @@ from trsim.report.asked import Found, file_name, nothing, table
 from trsim.report.display import Shown, short
 from trsim.report.keys import Units, axis, in_words
 from trsim.report.style import look, panels, save
+from trsim.statuses import NOT_NEEDED
 
 MOST = 14  # cells of a line: more have no room for numbers
 DARK = 0.55  # of the colour scale: below it letters are white
@@ -27,18 +28,23 @@ class Grid(NamedTuple):
     up: list[Any]
     values: NDArray[np.float64]
     ends: list[list[str]]  # "jammed" where a run was; else nothing
+    filled: NDArray[np.bool_]  # cells that were not needed and are as the nearest one that was
 
 
 def drawn(study: Any, one: Shown, of: Numbers, over: str | None, folder: Path) -> Found:
     """The map of one number, as figure and table."""
     grid, found = gridded(study, of, over), nothing()
     factor, unit = one.display(of.unit)
+    if grid.filled.any():
+        found.lines.append(f"{grid.filled.sum():,} of {grid.filled.size:,} cells were not run and "
+                           "have the colour of the nearest one that was")  # fmt: skip
     units = Units(study.units, study.written)
     with look():
         made, axes = panels(1, height=0.6 + 0.42 * max(len(grid.up), 4))
         names = [named(one, units, key, values) for key, values in
                  zip(grid.keys, (grid.across, grid.up), strict=True)]  # fmt: skip
-        shade = cells(axes[0, 0], names[0], names[1], factor * grid.values, grid.ends)
+        shade = cells(axes[0, 0], names[0], names[1], factor * grid.values, grid.ends,
+                      grid.filled)  # fmt: skip
         axes[0, 0].set_xlabel(axis(one, units, grid.keys[0]))
         axes[0, 0].set_ylabel(axis(one, units, grid.keys[1]))
         made.colorbar(shade, label=f"{in_words(of.word)} ({unit})")
@@ -46,14 +52,17 @@ def drawn(study: Any, one: Shown, of: Numbers, over: str | None, folder: Path) -
     titles = [f"{key} [{study.units.get(key, '-')}]" for key in grid.keys]
     head = ["case", "status", *titles, f"{of.word} [{of.unit}]"]
     rows = [(case.name, case.status, *(case.values[key] for key in grid.keys),
-             of.values[case.name]) for case in study.cases]  # fmt: skip
+             of.values.get(case.name, np.nan)) for case in study.cases]  # fmt: skip
     found.files.append(table(folder / f"{file_name('map', of.word)}.csv", head, rows))
     found.lines.extend(reasons(of.why))
     return found
 
 
 def gridded(study: Any, of: Numbers, over: str | None) -> Grid:
-    """The cases of a study of two keys; raises UsageError for any other."""
+    """The cases of a study of two keys; raises UsageError for any other.
+
+    A case that was not needed is as the nearest one that was, in steps of the grid.
+    """
     keys = list(study.keys)
     check_swept(study, over)
     if len(keys) != 2:
@@ -63,7 +72,7 @@ def gridded(study: Any, of: Numbers, over: str | None) -> Grid:
     up = keys[1 - keys.index(across)]
     xs, ys = (ordered(case.values[key] for case in study.cases) for key in (across, up))
     values, ends = np.full((len(ys), len(xs)), np.nan), [[""] * len(xs) for _ in ys]
-    taken = set()
+    taken, filled = set(), np.zeros(values.shape, bool)
     for case in study.cases:
         place = ys.index(case.values[up]), xs.index(case.values[across])
         if place in taken:
@@ -71,9 +80,17 @@ def gridded(study: Any, of: Numbers, over: str | None) -> Grid:
                 f"several cases have the same {across} and {up}", "A map is of a grid."
             )
         taken.add(place)
-        values[place] = of.values[case.name]
+        filled[place] = case.status == NOT_NEEDED
+        values[place] = of.values.get(case.name, np.nan)
         ends[place[0]][place[1]] = case.status if case.status != "done" else ""
-    return Grid((across, up), xs, ys, values, ends)
+    if filled.any():
+        from scipy.ndimage import distance_transform_edt
+
+        near = distance_transform_edt(filled, return_distances=False, return_indices=True)
+        values = values[tuple(near)]
+        ends = [[ends[y][x] for y, x in zip(*row, strict=True)]
+                for row in np.moveaxis(near, 0, 1).tolist()]  # fmt: skip
+    return Grid((across, up), xs, ys, values, ends, filled)
 
 
 def ordered(values: Any) -> list[Any]:
@@ -90,9 +107,12 @@ def named(one: Shown, units: Units, key: str, values: Sequence[Any]) -> list[str
 
 def cells(
     axes: Any, across: Sequence[str], up: Sequence[str], values: NDArray[np.float64],
-    ends: Sequence[Sequence[str]],
+    ends: Sequence[Sequence[str]], filled: NDArray[np.bool_] | None = None,
 ) -> Any:  # fmt: skip
-    """Coloured cells with their numbers and ends; what tells the colours."""
+    """Coloured cells with their numbers and ends; what tells the colours.
+
+    Cells that are filled have the colour alone: on a map without numbers the others have a dot.
+    """
     x, y = np.arange(len(across) + 1) - 0.5, np.arange(len(up) + 1) - 0.5
     shade = axes.pcolormesh(x, y, np.ma.masked_invalid(values), cmap="cividis", ec="white", lw=1.0)
     axes.set_xticks(range(len(across)), list(across))
@@ -100,8 +120,13 @@ def cells(
     axes.grid(visible=False)
     axes.set_facecolor("0.88")  # of cells without a number
     if max(len(across), len(up)) > MOST:
+        if filled is not None and filled.any():
+            rows, columns = np.nonzero(~filled)
+            axes.plot(columns, rows, ".", ms=1.5, mew=0, color="0.5")
         return shade
     for y, x in np.ndindex(values.shape):
+        if filled is not None and filled[y, x]:
+            continue
         value = float(values[y, x])
         number = "" if np.isnan(value) else short(value, 3)
         text = "\n".join(part for part in (number, ends[y][x]) if part)

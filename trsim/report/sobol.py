@@ -22,7 +22,9 @@ def sobol(study: Any, one: Shown, of: Numbers, folder: Path) -> Found:
     found, wrong = nothing(), list[TrsimError]()
     for name, cases in named(study).items():
         try:
-            values, left_out = blocks(places(study, cases), lambda case: of.values[case.name])
+            values, left_out = blocks(
+                places(study, cases), lambda case: of.values.get(case.name, np.nan)
+            )
             each = indices(factors(study, cases), values, of.word, of.unit, left_out)
         except UsageError as error:
             what = f"{name}: {error.what}" if name else error.what

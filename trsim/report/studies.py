@@ -15,10 +15,12 @@ from trsim.analyse.cases import (
     numeric,
     reasons,
     shorter,
+    spared,
     unfinished,
     varied,
     without,
 )
+from trsim.analyse.cases import needed as of_needed
 from trsim.analyse.fluctuation import shows
 from trsim.errors import FileError, UsageError
 from trsim.report import case_bars, envelopes, maps, style
@@ -61,9 +63,10 @@ def draw(
 ) -> Found:
     """What was asked for of a study; its chosen numbers where nothing was.
 
-    chosen: units in place of SI ones.
+    chosen: units in place of SI ones.  Cases that were not needed are in maps and designs alone.
     """
     one, found = shown(study, chosen), nothing()
+    whole, study = study, of_needed(study)
     if not any((words, asked.bifurcation, asked.sobol, asked.map, asked.bars, asked.envelope)):
         words = usual(one)
     bars = [parted_words([text]) for text in asked.bars]
@@ -73,9 +76,9 @@ def draw(
         found.add(bifurcation(one, drawn, folder))
         found.lines.extend(without(study, drawn.over))
     for word in asked.sobol:
-        found.add(sobol(study, one, of[word], folder))
+        found.add(sobol(whole, one, of[word], folder))
     for word in asked.map:
-        found.add(maps.drawn(study, one, of[word], asked.over, folder))
+        found.add(maps.drawn(whole, one, of[word], asked.over, folder))
     for group in bars:
         found.add(case_bars.draw(study, one, [of[word] for word in group], folder))
     if asked.envelope:
@@ -84,7 +87,7 @@ def draw(
         found.lines.extend(shorter(study))
     if words:
         found.add(outputs(study, one, [of[word] for word in words], asked.over, folder))
-    lines = [*found.lines, *unfinished(study)]
+    lines = [*found.lines, *spared(whole), *unfinished(study)]
     found.lines[:] = dict.fromkeys(lines)  # what is in the way of several is told once
     return found
 

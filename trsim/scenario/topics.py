@@ -182,4 +182,13 @@ SWEEP = (  # keys of `sweep` that are no path: word, what it may be, meaning
     ("keep", "all | summary", "of every case: its result file, or its numbers only"),
     ("numbers", "list", "numbers of a run, as in `trsim show`, that are kept of every case too: "
      "peak:B.contact_force@0.3..0.5"),
+    ("until", "mapping of numbers of a run to widths", "of monte_carlo and sobol: samples are run "
+     "until half of the 95 % interval is no more than this: of the mean over cases, 2 % of it or "
+     "20 N; of sobol's indices, 0.05"),
+    ("refine", "mapping", "of a grid: which values are run first; those between are run where "
+     "neighbours differ, in status or in a number"),
+    ("refine.every", "whole number | mapping of keys to whole numbers", "8 runs each 8th value of "
+     "an axis first; of a key that a mapping does not name all are run"),
+    ("refine.by", "mapping of numbers of a run to widths", "neighbours differ too where a number "
+     "does by more than this: {peak:B.contact_force: 5 %}"),
 )  # fmt: skip

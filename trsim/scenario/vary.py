@@ -9,6 +9,7 @@
 
     keep: all          the result file of every case;  summary: its numbers only (sweeps/summary.py)
     numbers: [...]     which a summary has besides: peak:B.contact_force@0.3..0.5
+    until, refine      which cases are run at all (adaptive.py)
 
 A key with a dot is a dotted path as for --set.  A normal distribution is cut at three standard
 deviations.  sobol is Saltelli's design of samples (d + 2) cases for indices of variance.
@@ -19,13 +20,16 @@ import re
 from typing import Any, NamedTuple
 
 from trsim.errors import ScenarioError, closest, described, known
+from trsim.scenario import adaptive
+from trsim.scenario.adaptive import Refine, Widths
 from trsim.units import quantity
 from trsim.units import unit as dimension
 
 METHODS = ("grid", "zip", "latin_hypercube", "monte_carlo", "sobol")
 SAMPLED = METHODS[2:]
 KEPT = ("keep", "numbers")  # what of cases is kept
-SETTINGS = ("method", "samples", "seed", *KEPT)
+CHOSEN = ("until", "refine")  # which cases are run
+SETTINGS = ("method", "samples", "seed", *KEPT, *CHOSEN)
 SUMMARY, ALL = "summary", "all"
 KEEP = (ALL, SUMMARY)
 SPACED = ("lin", "log")
@@ -64,6 +68,8 @@ class Sweep(NamedTuple):
     seed: int = 0
     keep: str = ALL
     numbers: tuple[str, ...] = ()  # besides those that a summary has anyway
+    until: Widths = ()
+    refine: Refine | None = None
 
 
 def sweep(data: Any) -> Sweep:
@@ -100,7 +106,29 @@ def sweep(data: Any) -> Sweep:
         raise ScenarioError("zip needs as many values of each key", f"There are {lengths}.")
     samples = _whole(data, "samples", 1) if method in SAMPLED else 0
     seed = _whole(data, "seed", 0) if "seed" in data else 0
-    return Sweep(axes, method, samples, seed, *_kept(data))
+    until, refine = _chosen(data, method, axes)
+    keep, numbers = _kept(data)
+    asked = dict.fromkeys(word for word, _ in (*until, *(refine.by if refine else ())))
+    numbers = tuple(dict.fromkeys((*numbers, *asked)))
+    return Sweep(axes, method, samples, seed, keep, numbers, until, refine)
+
+
+def _chosen(
+    data: dict[str, Any], method: str, axes: tuple[Axis, ...]
+) -> tuple[Widths, Refine | None]:
+    """What decides which cases are run."""
+    own = {one.key: one.values for one in axes if not one.same_as}
+    until: Widths = ()
+    refine: Refine | None = None
+    for key in (key for key in CHOSEN if key in data):
+        try:
+            if key == "until":
+                until = adaptive.until(data[key], method)
+            else:
+                refine = adaptive.refine(data[key], method, own)
+        except ScenarioError as error:
+            raise error.at(key) from None
+    return until, refine
 
 
 def _kept(data: dict[str, Any]) -> tuple[str, tuple[str, ...]]:

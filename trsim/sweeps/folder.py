@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from trsim.errors import FileError, UsageError
+from trsim.statuses import NOT_NEEDED
 from trsim.store.lock import refuse_if_written
 from trsim.store.own import remove
 from trsim.store.target import FIGURES, HEADER, Kind, fresh, headed, replaceable
 from trsim.sweeps.ledger import WORD, Entry, in_a_line
-from trsim.sweeps.plan import CASE, Plan
+from trsim.sweeps.plan import CASE, Chosen, Plan
 from trsim.sweeps.values import value
 
 FORMAT, VERSION = "trsim sweep", 1
@@ -30,8 +31,10 @@ DRAWN = {f".{ending}": kind for ending, kind in FIGURES.items()} | {
 }
 NEEDED = {"version", "source", "engine", "keys", "units", "method", "samples", "seed", "cases"}
 KINDS = {"source": str, "engine": str, "keys": list, "units": dict, "written": dict, "method": str,
-         "samples": int, "seed": int, "cases": list, "numbers": list, "sets": list}  # fmt: skip
+         "samples": int, "seed": int, "cases": list, "numbers": list, "sets": list,
+         "chosen": list}  # fmt: skip
 AGAIN = "The same `trsim sweep` writes it again."
+SPARED = "not_needed"  # of a case in plan.json that an adaptive sweep did not ask for
 LAST = ("attempts", "wall_time", "content_sha256")
 
 
@@ -99,10 +102,14 @@ def _drawn(path: Path) -> bool:
     return False
 
 
-def write_plan(folder: Path, plan: Plan, engine: str) -> None:
-    """plan.json; what reads a sweep later needs nothing else to know its cases."""
+def write_plan(folder: Path, plan: Plan, engine: str, chosen: Chosen | None = None) -> None:
+    """plan.json; what reads a sweep later needs nothing else to know its cases.
+
+    chosen: which of them were asked for, once an adaptive sweep has ended.
+    """
     cases = [
         {"name": c.name, "digest": c.digest, "values": _values(c.case, c.values)}
+        | ({SPARED: True} if chosen and c.name not in chosen.cases else {})
         for c in plan.cases
     ]
     told = {
@@ -111,6 +118,8 @@ def write_plan(folder: Path, plan: Plan, engine: str) -> None:
         "samples": plan.samples, "seed": plan.seed, "cases": cases,
         "numbers": list(plan.numbers), "sets": list(plan.sets),
     }  # fmt: skip
+    if plan.adaptive:
+        told["chosen"] = list(chosen.told) if chosen else []
     write_told(folder, told)
 
 
@@ -158,15 +167,17 @@ def _wrong(told: dict[str, Any]) -> str:
         if not isinstance(told.get(name, kind()), kind):
             return f"{name} is no {kind.__name__}"
     texts = [*told["keys"], *told["units"].values(), *told.get("written", {}).values()]
-    texts += [*told.get("numbers", ()), *told.get("sets", ())]
+    texts += [*told.get("numbers", ()), *told.get("sets", ()), *told.get("chosen", ())]
     if not all(isinstance(text, str) for text in texts):
-        return "keys, units, numbers or sets are no texts"
+        return "keys, units, numbers, sets or chosen are no texts"
     names = []
     for one in told["cases"]:
         if not isinstance(one, dict) or not isinstance(one.get("values"), dict):
             return "cases are no mappings with values"
         if not all(isinstance(one.get(name), str) for name in ("name", "digest")):
             return "cases have no name or digest"
+        if not isinstance(one.get(SPARED, True), bool):
+            return f"case {one['name'][:60]!r} does not say whether it was needed"
         if not all(isinstance(value, WORD) for value in one["values"].values()):
             return f"case {one['name'][:60]!r} has a value that is none"
         if "/" in one["name"] or "\0" in one["name"] or one["name"] in ("", ".", ".."):
@@ -193,7 +204,8 @@ def write_index(folder: Path, told: Mapping[str, Any], entries: Mapping[str, Ent
         entry = entries.get(case["name"])
         values = [case["values"].get(key) for key in keys]
         if entry is None or entry.digest != case["digest"]:
-            table.writerow([case["name"], "missing", "", *values])
+            status = NOT_NEEDED if case.get(SPARED) else "missing"
+            table.writerow([case["name"], status, "", *values])
             continue
         numbers = [entry.summary.get(column) for column in columns]
         last = [entry.attempts, round(entry.wall, 3), entry.content]

@@ -11,6 +11,8 @@ from trsim.store.checkpoint import sources
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.own import remove
 from trsim.store.target import LOCK, file_errors, make
+from trsim.sweeps.adaptive import Batches, check_whole
+from trsim.sweeps.choosing import Results
 from trsim.sweeps.folder import (
     check_usable,
     read_plan,
@@ -60,11 +62,12 @@ def needs(plan: Plan, folder: Path, engine: str, shard: Shard = WHOLE) -> list[t
 def go(
     plan: Plan, folder: Path, engine: str, run: Runner, shard: Shard = WHOLE
 ) -> Generator[Entry | int, None, None]:
-    """Run what is needed: first how many cases that are, then each as it ends.
+    """Run what is needed, batch by batch: first how many cases that are, then each as it ends.
 
     Raises FileError where the folder cannot be written, or is being written by another process;
-    UsageError where it is not the folder of a sweep.
+    UsageError where it is not the folder of a sweep, or where shards cannot choose their cases.
     """
+    check_whole(plan, shard.n)
     check_usable(folder)
     with file_errors(folder):
         make(folder / "cases")
@@ -126,15 +129,38 @@ def _gone_on(
     shard: Shard,
     books: tuple[Ledger, Records],
 ) -> Generator[Entry | int, None, None]:
-    (ledger, records), wanted, known = books, [], entries(folder)
+    ledger, standing, why, known = books[0], dict[str, Entry](), set[str](), entries(folder)
     for case, found in needs(plan, folder, engine, shard):
         if found.why:
-            wanted.append(case)
-        elif found.entry and found.entry != known.get(case.name):  # its line was lost, or is old
-            ledger.add(found.entry)
-    yield len(wanted)
-    if not wanted:
-        return
+            why.add(case.name)
+        elif found.entry:
+            standing[case.name] = found.entry
+            if found.entry != known.get(case.name):  # its line was lost, or is old
+                ledger.add(found.entry)
+    batches = Batches(plan, Results(folder, standing))
+    for k, batch in enumerate(batches):
+        wanted = [case for case in batch if case.name in why]
+        if wanted or k == 0:
+            yield len(wanted)
+        for entry in _ran(plan, folder, engine, run, (wanted, books)) if wanted else ():
+            standing[entry.case] = entry
+            why.discard(entry.case)
+            yield entry
+        if not all(case.name in standing for case in batch):
+            return  # other shards have them
+    if plan.adaptive:
+        write_plan(folder, plan, engine, batches.chosen)
+
+
+def _ran(
+    plan: Plan,
+    folder: Path,
+    engine: str,
+    run: Runner,
+    of: tuple[list[Case], tuple[Ledger, Records]],
+) -> Generator[Entry, None, None]:
+    """Cases run, and what became of each written down as it ends."""
+    wanted, (ledger, records) = of
     cases = {case.name: case for case in wanted}
     tasks = (task(case, plan, named_file(folder, case.name)) for case in wanted)
     table, known = read_plan(folder), entries(folder)  # with what other shards did

@@ -55,9 +55,21 @@ class Plan(NamedTuple):
     sets: tuple[str, ...]  # of the command line
     trees: dict[str, "_Named"]  # of the named cases
 
+    @property
+    def adaptive(self) -> bool:
+        """Whether it depends on what comes out which cases are run."""
+        return any(one.sweep.until or one.sweep.refine for one in self.trees.values())
+
     def scenario(self, case: Case) -> Scenario:
         """The scenario of a case.  Raises what is wrong with it, with its place."""
         return self.trees[case.case].scenario(case)
+
+
+class Chosen(NamedTuple):
+    """Which cases of a plan an adaptive sweep asked for, known once it has ended."""
+
+    cases: frozenset[str]
+    told: tuple[str, ...]  # why no further ones: a line for each name in `cases:`
 
 
 class _Setting(NamedTuple):
@@ -130,7 +142,7 @@ def plan(
         raise UsageError(
             what, "Write the same `keep` and `numbers` in every `sweep`, or use --keep."
         )
-    _check_numbers(sweep.numbers, first.tree)
+    _check_numbers(sweep, first.tree)
     return Plan(path, text, tree.files, keys, si, shown, sweep.method, sweep.samples, sweep.seed,
                 tuple(_distinct(found)), sweep.keep, sweep.numbers, sets, named)  # fmt: skip
 
@@ -214,17 +226,19 @@ def _at(data: Any, key: str) -> Any:
     return data
 
 
-def _check_numbers(words: tuple[str, ...], tree: Tree) -> None:
+def _check_numbers(sweep: vary.Sweep, tree: Tree) -> None:
     """Check that what is to be kept of every case are numbers of a run."""
-    if not words:
+    if not sweep.numbers:
         return
     from trsim.analyse.outputs import check_word
 
-    for word in words:
+    places: dict[str, tuple[str, ...]] = {word: ("until", word) for word, _ in sweep.until}
+    places |= {word: ("refine", "by", word) for word, _ in sweep.refine.by} if sweep.refine else {}
+    for word in sweep.numbers:
         try:
             check_word(word)
         except UsageError as error:
-            path = ("sweep", "numbers")
+            path = ("sweep", *places.get(word, ("numbers",)))
             raise ScenarioError(error.what, error.hint, path, tree.place(path)) from None
 
 

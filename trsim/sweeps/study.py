@@ -5,8 +5,9 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 
 from trsim.errors import FileError
+from trsim.statuses import NOT_NEEDED
 from trsim.store.read import Run, read
-from trsim.sweeps.folder import read_plan
+from trsim.sweeps.folder import SPARED, read_plan
 from trsim.sweeps.ledger import FAILED, Entry, entries, stamp
 from trsim.sweeps.needed import CHANGED, adopted, stands
 from trsim.sweeps.plan import named_file
@@ -23,7 +24,7 @@ class Case:
 
     name: str
     file: Path
-    status: str  # of the run, MISSING, or why there is none (ledger.py)
+    status: str  # of the run, MISSING, NOT_NEEDED, or why there is none (ledger.py)
     reason: str
     values: dict[str, float | str]  # key -> SI number, or word
     entry: Entry | None
@@ -89,6 +90,8 @@ class Study:
     samples: int
     seed: int
     cases: tuple[Case, ...]
+    adaptive: bool = False  # whether it chooses which cases are run
+    chosen: tuple[str, ...] = ()  # what it found, and from how many cases; once it has ended
 
     @cached_property
     def named(self) -> dict[str, Case]:
@@ -106,7 +109,8 @@ def study(folder: str | Path) -> Study:
             entry = None
         if entry is None and file.is_file():  # its line was lost; the file says what it is
             entry = adopted(one["name"], one["digest"], file, told["engine"])
-        status, reason = (entry.status, entry.reason) if entry else (MISSING, "")
+        without = NOT_NEEDED if one.get(SPARED) else MISSING
+        status, reason = (entry.status, entry.reason) if entry else (without, "")
         if entry and entry.content:
             if found := stands(entry, file, told["engine"], sizes):
                 entry, status, reason = found, found.status, found.reason
@@ -115,4 +119,6 @@ def study(folder: str | Path) -> Study:
         cases.append(Case(one["name"], file, status, reason, one["values"], entry))
     same = {name: told[name] for name in ("source", "units", "method", "samples", "seed")}
     keys, written = tuple(told["keys"]), told.get("written", {})
-    return Study(folder=folder, keys=keys, written=written, cases=tuple(cases), **same)
+    adaptive, chosen = "chosen" in told, tuple(told.get("chosen", ()))
+    return Study(folder=folder, keys=keys, written=written, cases=tuple(cases), adaptive=adaptive,
+                 chosen=chosen, **same)  # fmt: skip

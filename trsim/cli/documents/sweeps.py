@@ -38,6 +38,7 @@ class Sweep(Document):
     cases   of the plan
     ran     how many were run now
     counts  status -> how many cases have it; of this share
+    chosen  of `until` and `refine`: what came of them, and of how many cases
     needed  what is to be run, with --dry-run and --explain
     """
 
@@ -45,6 +46,7 @@ class Sweep(Document):
     cases: int
     ran: int
     counts: dict[str, int]
+    chosen: list[str]
     needed: NotRequired[list[Needed]]
 
 
@@ -57,6 +59,7 @@ class Status(Document):
     counts          status -> how many cases have it
     failed          the cases that failed
     wall_of_a_case  mean wall time of those that were run, s
+    chosen          of `until` and `refine`: what came of them, and of how many cases
     """
 
     folder: str
@@ -65,6 +68,7 @@ class Status(Document):
     counts: dict[str, int]
     failed: list[Failed]
     wall_of_a_case: Number
+    chosen: list[str]
 
 
 class LeftOut(TypedDict):
