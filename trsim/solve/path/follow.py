@@ -228,6 +228,7 @@ class Path:
             eq.anchor = eq.anchor if found is not None else far
         if found is None:
             found = eq.solved(t, y, lam, place.inverse)
+        found = found or eq.solved_sticking(t, y, lam, place, self.looks.slow)
         if found is None:
             return None
         far, off = self.way(place.y, found[0]), self.way(y, found[0])
@@ -411,7 +412,6 @@ class Path:
     def accept(self, place: Place, trial: Place, smooth: bool) -> None:
         """Keep the place that was known last, with accelerations by those next to it."""
         self.kept(place, trial, smooth)
-        self.before = place
         work = self.eq.work
         poses(work, trial.y)
         work.branch[:] = work.S[:, 0]

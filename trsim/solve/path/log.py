@@ -52,8 +52,9 @@ class Log:
         elif change.kind == RIM:
             kind, row = rec.CORNER, looks.whose(looks.rims[change.which] + HELD_OF_TABLE)
         elif change.kind == RUB:
-            looks.direction[change.which] = change.to
-            kind, row = rec.TURNS, int(self.eq.work.rubbing[change.which, 0])
+            if change.which in looks.direction:
+                looks.direction[change.which] = change.to
+            kind, row = rec.TURNS, change.which
         elif change.kind == SENSE:
             self.unstable(place, change)
         elif change.kind == WATCH:
