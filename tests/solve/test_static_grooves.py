@@ -61,7 +61,8 @@ forces:
          points: [[0, 0.01414, 0.1], [0, 0.01414, 0]]}
   HOLD
   touch: {type: surface_contact, ball: {body: ball, at: [0, 0.01414, 0], radius: 10 mm},
-          surface: {body: ground, shape: profile, points: [[-30 mm, 30 mm], [0, 0], [30 mm, 30 mm]]}}
+          surface: {body: ground, shape: profile,
+                    points: [[-30 mm, 30 mm], [0, 0], [30 mm, 30 mm]]}}
 """
 UPRIGHT = "turns: {type: parallel, bodies: [ground, ball], at: [0, 0.01414, 0], axis: [0, 0, 1]}"
 SPRING = "spring: {type: torsion_spring, joint: turns.angle, stiffness: 100}"
