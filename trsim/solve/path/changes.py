@@ -64,6 +64,7 @@ class Looks:
         self.rub_rows = w.rubbing[:, 0].tolist()
         self.direction = dict.fromkeys(self.rub_rows, 0.0)
         self.heading: dict[int, Array] = {}  # of what touches: its last sliding velocity
+        self.came: dict[int, Any] = {}  # both as they were at the place before
         self.slow = AT_REST * w.size / end
         self.events = equations.mechanism.stages.switches.events
         self.side = dict.fromkeys(range(len(self.events)), 0.0)
@@ -104,6 +105,17 @@ class Looks:
         return [
             (e, v) for e, v in self.eq.sliding(place) if e not in stuck and length(v) > self.slow
         ]
+
+    def slides(self, place: Place, e: int) -> bool:
+        """Whether something that rubs slides, and does not stick."""
+        if e in self.direction:
+            return bool(abs(self.slips(place)[self.rub_rows.index(e)]) > self.slow)
+        return any(one == e for one, _ in self.touching(place))
+
+    def put_back(self, e: int, direction: Any) -> None:
+        """Take the direction in which something slid before it came to rest."""
+        which: dict[int, Any] = self.direction if e in self.direction else self.heading
+        which[e] = direction
 
     def all_slide(self, place: Place) -> bool:
         """Whether nothing that rubs sticks."""
@@ -221,6 +233,7 @@ class Looks:
         """Take directions of sliding, and pieces of functions, where there was none."""
         now, held = self.pieces(place), self.work.tab[self.places]
         self.work.tab[self.places] = np.where(held == FREE, now, held)
+        self.came = self.direction | self.heading
         for e, slip in zip(self.rub_rows, self.slips(place).tolist(), strict=True):
             if abs(slip) > self.slow:
                 self.direction[e] = float(np.sign(slip))

@@ -415,7 +415,7 @@ class Path:
         work = self.eq.work
         poses(work, trial.y)
         work.branch[:] = work.S[:, 0]
-        self.looks.directions(trial)
+        self.log.go_on(trial)
         self.before = place
         if not smooth:
             self.kept(trial, None)

@@ -36,6 +36,7 @@ class Log:
         self.status: Ended = "done"
         self.reason = ""
         self.falls: list[tuple[float, str]] = []
+        self.turning: list[tuple[float, Change, Any]] = []  # what turns round, see `go_on`
         self.letting_go: list[UserEvent] = []  # events that let drives go at this place
         self.hands_over = False  # what user events do, see phase.py
         self.due: list[tuple[int, float]] = []  # those that happen here, with the rate then
@@ -52,18 +53,31 @@ class Log:
         elif change.kind == RIM:
             kind, row = rec.CORNER, looks.whose(looks.rims[change.which] + HELD_OF_TABLE)
         elif change.kind == RUB:
-            if change.which in looks.direction:
-                looks.direction[change.which] = change.to
-            kind, row = rec.TURNS, change.which
+            self.turning.append((place.t, change, looks.came[change.which]))
         elif change.kind == SENSE:
             self.unstable(place, change)
         elif change.kind == WATCH:
             change = self.with_rate(place, change)
             kind, row = self.happened(place, change)
-        known = [line[:3].tolist() for line in self.events]
-        if row >= 0 and [place.t, kind, row] not in known:
+        if row >= 0:
+            self.line(place.t, kind, row, change.rate)
+
+    def line(self, t: float, kind: float, row: int, rate: float) -> None:
+        """A line of the table, once."""
+        if [t, kind, row] not in [line[:3].tolist() for line in self.events]:
             self.count += 1
-            self.events.append(np.array([place.t, kind, row, change.rate, np.nan, 0.0, 0.0]))
+            self.events.append(np.array([t, kind, row, rate, np.nan, 0.0, 0.0]))
+
+    def go_on(self, place: Place) -> None:
+        """Take directions of sliding at the next place.  What turned round before has a line if it
+        slides there; what sticks goes on later, or back."""
+        for t, change, before in self.turning:
+            if self.looks.slides(place, change.which):
+                self.line(t, rec.TURNS, change.which, change.rate)
+            else:
+                self.looks.put_back(change.which, before)
+        self.turning = []
+        self.looks.directions(place)
 
     def with_rate(self, place: Place, change: Change) -> Change:
         """The same with the rate of what is watched; where it has none of its own, as a channel,
