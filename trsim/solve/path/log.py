@@ -22,6 +22,7 @@ TOLD = 0.05  # of the largest force of a drive: what inertia may add untold
 SHOWN = 4  # coordinates of joints in a sentence
 FAR = {"angle": 0.5, "stroke": 0.1}  # rad, and of the mechanism's size: no longer where it was put
 NEXT_TO = 100.0  # of the time in which functions are differentiated: for rates of channels
+SOON = 1e-3  # of the time between rows: what turned round may not slide in full so soon
 BOTH = 1.5  # signs beyond it are those of places where nothing is free
 
 
@@ -70,13 +71,16 @@ class Log:
 
     def go_on(self, place: Place) -> None:
         """Take directions of sliding at the next place.  What turned round before has a line if it
-        slides there; what sticks goes on later, or back."""
+        slides there; what sticks goes on later, or back.  A place next to it does not tell."""
+        waiting = []
         for t, change, before in self.turning:
             if self.looks.slides(place, change.which):
                 self.line(t, rec.TURNS, change.which, change.rate)
-            else:
+            elif place.t - t > SOON * self.results.every:
                 self.looks.put_back(change.which, before)
-        self.turning = []
+            else:
+                waiting.append((t, change, before))
+        self.turning = waiting
         self.looks.directions(place)
 
     def with_rate(self, place: Place, change: Change) -> Change:
