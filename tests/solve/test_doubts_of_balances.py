@@ -2,7 +2,7 @@
 
 import pytest
 
-from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.diagnose.doubts import doubts, settled
 
 from ..runs import run
 
@@ -57,3 +57,26 @@ def test_a_drawing_that_a_drive_does_not_meet():
     text = text.replace("forces:", "drives: {d: {joint: v, position: 0.2 + 0.1*t}}\nforces:")
     (found,) = said(text)
     assert found.startswith("bodies.b: starts 0.2 m from where it is drawn, to meet joints")
+
+
+@pytest.mark.parametrize("solver", ["method: static_path, ", ""])
+@pytest.mark.parametrize("stiffness, moved", [(200, "moved 'b' by 0.05 m"), (2000, "")])
+def test_how_far_an_equilibrium_moves_a_body(solver, stiffness, moved):
+    """10 N on a spring in a mechanism of 1 m; half a per cent is no news."""
+    text = HUNG.replace("K", str(stiffness)).replace("method: static_path, ", solver)
+    text += "" if solver else "initial: {equilibrium: all}\n"
+    r = run(text)
+    found = settled(r.scenario, r.mechanism, r.outcome.start)
+    assert found == (f"the equilibrium at the start {moved}" if moved else "")
+
+
+def test_nothing_is_said_of_a_start_as_drawn():
+    text = HUNG.replace("K", "200").replace("method: static_path, ", "")
+    r = run(text)
+    assert settled(r.scenario, r.mechanism, r.outcome.start) == ""
+
+
+def test_a_rod_that_its_equilibrium_lets_down():
+    r = run(ROD)
+    found = settled(r.scenario, r.mechanism, r.outcome.start)
+    assert found == "the equilibrium at the start moved 'b' by 0.141 m"

@@ -26,11 +26,19 @@ output: {every: EVERY}
 """
 
 
-@pytest.mark.parametrize("every", ["0.1", "0.02"])
-def test_a_block_dragged_sideways_follows_a_tractrix(every):
+INSIDE_STEPS = """
+sensors: {s: {joint: rail}}
+events:
+  one: {when: s, value: 0.13, do: {record: true}}
+  other: {when: s, value: 0.139, do: {record: true}}
+"""
+
+
+@pytest.mark.parametrize("every, events", [("0.1", ""), ("0.02", ""), ("0.1", INSIDE_STEPS)])
+def test_a_block_dragged_sideways_follows_a_tractrix(every, events):
     """x = a sech(u), y = y_p - a tanh(u) from where the rope pulls with the 6 N of friction; the
-    direction of sliding is that at the end of a step, to second order."""
-    r = run(DRAGGED.replace("EVERY", every))
+    direction of sliding is that at the end of a step, to second order, whatever happens inside."""
+    r = run(DRAGGED.replace("EVERY", every) + events)
     a, y_p = 0.106, 0.3 * r.t
     begins = np.sqrt(0.106**2 - 0.1**2)  # the path begins with a slack rope of 0.1 m
     slides = y_p > begins
@@ -38,6 +46,10 @@ def test_a_block_dragged_sideways_follows_a_tractrix(every):
     wanted = np.array([a / np.cosh(u), y_p[slides] - a * np.tanh(u)]).T
     # 5e-4 by directions of the first order, whatever the rows
     assert r["block.position"][slides, :2] == pytest.approx(wanted, abs=6e-5)
+    u = np.arccosh(1.06) + (0.3 * r.recorded[:, 0] - begins) / a
+    pull = r.recorded[:, 2 + r.place["d.force"][0]]
+    assert pull == pytest.approx(6 * np.tanh(u), abs=6 * 6e-5 / a)
+    assert len(pull) == 2 * bool(events)
 
 
 DETENT = """

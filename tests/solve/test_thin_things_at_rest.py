@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.scenario.load import loads
+from trsim.solve.start.bars import places
 from trsim.solve.start.consistent import start
 
 from ..runs import assemble, run
@@ -118,3 +119,34 @@ def test_a_static_phase_behind_a_fall():
     r = run(FALL)
     y = r["y"].ravel()[-1]
     assert 1e8 * (-y - 1e-5) ** 1.5 == pytest.approx(20.0 * (0.01 + y) + 0.05 * 9.81, rel=1e-6)
+
+
+CANTILEVER = """
+planar: PLANAR
+bodies:
+  beam: {type: ancf_cable, start: [0, 0], end: [1, 0], elements: 4, area: 1, second_moment: 1e-5,
+         youngs_modulus: 1e5, density: 1, strain: engineering, curvature: gerstmayr}
+joints: {clamp: {type: fixed, bodies: [ground, beam], at: [0, 0]}}
+forces:
+  tip: {type: applied_load, body: beam, at: [1, 0], direction: [0, -1, 0], force: 1}
+  touch: {type: surface_contact, ball: {body: beam, at: [1, 0], radius: 5 mm},
+          surface: {body: ground, shape: profile, points: [[0.6, PLACE], [1.2, PLACE]]}}
+contact_laws: {k: {normal: impact, stiffness: 1e6, exponent: 1.5, damping: 10, ramp: 0.01 mm}}
+initial: {equilibrium: all}
+solver: {end: 10 ms}
+"""
+
+
+@pytest.mark.parametrize("gap, planar", [(1e-3, "true"), (0.05, "true"), (0.02, "false")])
+def test_a_bar_that_bends_onto_a_plate(gap, planar):
+    """Of 1 m, EI = 1 N m^2, pressed down by 1 N: its tip comes down by w = gap + d, where the
+    plate takes N = 1 - 3 EI w / L^3 = 1e6 d^1.5, and not by a third of a metre."""
+    text = CANTILEVER.replace("PLACE", repr(-0.005 - gap)).replace("PLANAR", planar)
+    scenario = loads(text)
+    mechanism = assemble(scenario)
+    r, _ = places(mechanism, mechanism.beams["beam"], start(scenario, mechanism, True).y)
+    d = 0.0
+    for _ in range(60):
+        d = ((1.0 - 3.0 * (gap + d)) / 1e6) ** (2.0 / 3.0)
+    # the arch of the bar makes 3 EI w / L^3 larger by some w^2 of it
+    assert r[-1, 1] == pytest.approx(-gap - d, abs=d * 3.0 * gap * gap + 1e-8)

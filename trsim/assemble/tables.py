@@ -84,7 +84,9 @@ def kernels(instances: list[Instance]) -> dict[str, NDArray[np.int64]]:
     tables: dict[str, list[tuple[int, int, int]]] = {kind: [] for kind in KINDS}
     for (key, _), (a, b) in spans.items():
         for kind, kernel in loaded[key].kernels.items():
-            if kind == STRIKE and not any(map(takes_no_time, instances[a:b])):
+            if kind not in tables or (
+                kind == STRIKE and not any(map(takes_no_time, instances[a:b]))
+            ):
                 continue
             if instances[a].acts or kind not in ACTING:
                 tables[kind].append((kernel.address(), a, b))

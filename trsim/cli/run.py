@@ -134,6 +134,8 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
             f"{source}: inertia ratio {numbers['inertia_ratio']:.3g} {at}: so much of the largest "
             "force of a drive would inertia change"
         )
+    if "settled" in summary:
+        answer.say(f"{source}: note: {summary['settled']}")
     for name, times in summary["fired"].items():
         if times == 0 and summary["status"] == "done":
             answer.say(f"{source}: note: the event '{name}' never happened")

@@ -223,6 +223,13 @@ def gap(t, scene, e):
 
 
 @kernel
+def slip(t, scene, e):
+    blow = scene.blow
+    _, _, _, tangent, _, _, v_t = sliding(scene, e)
+    blow[0, 0], blow[0, 1], blow[0, 2] = scaled(v_t, tangent)
+
+
+@kernel
 def corners(t, scene, e):
     out = scene.corner
     own = Own(scene, e)
@@ -299,6 +306,7 @@ ELEMENT = Element(
         "coordinate": coordinate_of(("angle",), len(ROWS)),
         "force": force,
         "gaps": gap,
+        "slip": slip,
         "corners": corners,
         "energy": energy,
         "measure": measure,

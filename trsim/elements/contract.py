@@ -32,6 +32,8 @@ joint coordinates and sensors (S, angles unwrapped), the states z, and writes wh
     rub         F[i] += the wrenches of the friction force rubbed[e]
     strike      blow[k] = force, moment on body j, then on body i, world axes, of an impulse of 1
                 along the normal, k = 0, and along two directions across it; zero where it has none
+    slip        blow[0, :3] = the velocity at which body j slides on body i where they touch, world
+                axes; asked of single instances only, along static paths
 
 A spec of the section `bodies` says of itself
 

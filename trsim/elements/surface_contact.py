@@ -246,6 +246,13 @@ def strike(t, scene, e):
     impulses(blow, c_i, c_j, n, z, x)
 
 
+@kernel
+def slip(t, scene, e):
+    blow = scene.blow
+    _, _, _, _, _, v_t, _ = slides(scene, e)
+    blow[0, 0], blow[0, 1], blow[0, 2] = v_t
+
+
 @internal
 def beyond_rub(own, speed):
     """How far friction has left its branch, m/s; -1 where it has none."""
@@ -440,6 +447,7 @@ ELEMENT = Element(
         "force": force,
         "gaps": gap,
         "strike": strike,
+        "slip": slip,
         "corners": corners,
         "energy": energy,
         "measure": measure,

@@ -135,10 +135,11 @@ def summary(
 ) -> dict[str, Any]:
     """The run in a few numbers."""
     from trsim.scenario.lint import lint
-    from trsim.solve.diagnose.doubts import doubts  # who recovers a file needs no solver
+    from trsim.solve.diagnose.doubts import doubts, settled  # who recovers a file needs no solver
 
     mechanism = run.mechanism
     late = doubts(run.scenario, mechanism, outcome) if outcome else ()
+    moved = settled(run.scenario, mechanism, outcome.start) if outcome else ""
     names = [instance.name for instance in mechanism.instances]
     largest = {p.channel: p for p in found if p.extreme == "largest"}
     contacts = {}
@@ -166,6 +167,7 @@ def summary(
         "mobility": int(mechanism.mobility),
         "redundant": list(mechanism.redundant),
         "not_unique": list(mechanism.not_unique),
+        **({"settled": moved} if moved else {}),
     }
 
 

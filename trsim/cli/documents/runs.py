@@ -139,6 +139,7 @@ class Ran(Results, Result):
     certificate     what a twin says of it, with --certify
     sizing          what each pass left of the force of the drive, of that without the load; with
                     the key `sizing`
+    settled         how far the equilibrium it began in is from the drawing, where that is much
     """
 
     status: Ended
@@ -148,6 +149,7 @@ class Ran(Results, Result):
     identical: NotRequired[bool]
     certificate: NotRequired[Certified]
     sizing: NotRequired[list[Number]]
+    settled: NotRequired[str]
 
 
 class Run(Document):

@@ -62,6 +62,7 @@ from trsim.statuses import WELL
 Array = NDArray[np.float64]
 
 MOVED, TURNED = 1e-4, 1e-3  # of the mechanism's size, rad: more than the digits of a drawing
+SETTLED, SETTLED_TURN = 0.01, 0.05  # the same: more than what is ordinary of a balance
 FAR, TURNED_FAR = 0.1, 0.5  # the same: a balance is no longer the one next to a drawing
 VELOCITIES = (("velocity", "m/s", slice(3)), ("angular_velocity", "rad/s", slice(3, 6)))
 CHANGED = 1e-3  # of a speed that was given
@@ -175,6 +176,21 @@ def of_balance(mechanism: Mechanism, begun: Start) -> Iterator[str]:
             f"bodies.{one}: in the balance that the path begins in it is {other} it is drawn: is "
             "it the one meant? draw it near that one"
         )
+
+
+def settled(scenario: Any, mechanism: Mechanism, begun: Start) -> str:
+    """How far the equilibrium of the start moved a body, in words; empty where that is next to
+    nothing, or no equilibrium was asked for, or values of joints moved it as well."""
+    initial, static = scenario.initial, mechanism.stages.switches.static
+    rests = METHODS[scenario.solver.method].rests or (any(static) and static[0])
+    if initial.values or not (rests or initial.settles):
+        return ""
+    p, joined = (projected(mechanism, one) for one in (begun, as_joined(mechanism, begun)))
+    if p.shift - joined.shift > SETTLED * mechanism.model.size:
+        return f"the equilibrium at the start moved '{p.shift_body}' by {p.shift:.3g} m"
+    if p.turn - joined.turn > SETTLED_TURN:
+        return f"the equilibrium at the start turned '{p.turn_body}' by {p.turn:.3g} rad"
+    return ""
 
 
 def twists(mechanism: Mechanism, begun: Start, rates: Array) -> dict[str, Array]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.dense import length
 from trsim.assemble.equations import gaps, poses
 from trsim.assemble.features import HELD_FROM, HELD_TO, OFFSET, SENSED, hold_all
 from trsim.assemble.switches import CHANNEL, LIMITS, TIME
@@ -60,7 +61,10 @@ class Looks:
         self.eq, self.work = equations, equations.work
         w = self.work
         self.closed = {int(e): False for e in w.contact}
-        self.direction = dict.fromkeys(range(len(w.rubbing)), 0.0)
+        self.rub_rows = w.rubbing[:, 0].tolist()
+        self.direction = dict.fromkeys(self.rub_rows, 0.0)
+        self.heading: dict[int, Array] = {}  # of what touches: its last sliding velocity
+        self.came: dict[int, Any] = {}  # both as they were at the place before
         self.slow = AT_REST * w.size / end
         self.events = equations.mechanism.stages.switches.events
         self.side = dict.fromkeys(range(len(self.events)), 0.0)
@@ -92,6 +96,26 @@ class Looks:
             return np.zeros(0)
         unbalanced(w, place.t, self.moving(place), place.lam, np.zeros(self.eq.n + self.eq.m))
         return np.array(w.loads[w.rubbing[:, 0], Load.columns["slip"].at])
+
+    def touching(self, place: Place) -> list[tuple[int, Array]]:
+        """Sliding velocities of what touches and does not stick, along the path."""
+        if not self.eq.touching.kernels:
+            return []
+        stuck = self.eq.stuck(place.y)
+        return [
+            (e, v) for e, v in self.eq.sliding(place) if e not in stuck and length(v) > self.slow
+        ]
+
+    def slides(self, place: Place, e: int) -> bool:
+        """Whether something that rubs slides, and does not stick."""
+        if e in self.direction:
+            return bool(abs(self.slips(place)[self.rub_rows.index(e)]) > self.slow)
+        return any(one == e for one, _ in self.touching(place))
+
+    def put_back(self, e: int, direction: Any) -> None:
+        """Take the direction in which something slid before it came to rest."""
+        which: dict[int, Any] = self.direction if e in self.direction else self.heading
+        which[e] = direction
 
     def all_slide(self, place: Place) -> bool:
         """Whether nothing that rubs sticks."""
@@ -192,9 +216,12 @@ class Looks:
             for k, side in enumerate(self.outside()):
                 if side != self.over[k]:
                     found.append(Change(RIM, k, side))
-        for k, slip in enumerate(self.slips(place).tolist()):
-            if abs(slip) > self.slow and np.sign(slip) == -self.direction[k]:
-                found.append(Change(RUB, k, float(np.sign(slip)), slip))
+        for e, slip in zip(self.rub_rows, self.slips(place).tolist(), strict=True):
+            if abs(slip) > self.slow and np.sign(slip) == -self.direction[e]:
+                found.append(Change(RUB, e, float(np.sign(slip)), slip))
+        for e, v in self.touching(place):
+            if e in self.heading and v @ self.heading[e] < 0.0:
+                found.append(Change(RUB, e, -1.0, float(np.linalg.norm(v))))
         for k, (x, rate) in enumerate(self.values(place, out)):
             if self.left[k] > 0 and self.side[k] != 0.0 and x * self.side[k] <= 0.0:
                 found.append(Change(WATCH, k, -self.side[k], rate))
@@ -206,9 +233,12 @@ class Looks:
         """Take directions of sliding, and pieces of functions, where there was none."""
         now, held = self.pieces(place), self.work.tab[self.places]
         self.work.tab[self.places] = np.where(held == FREE, now, held)
-        for k, slip in enumerate(self.slips(place).tolist()):
+        self.came = self.direction | self.heading
+        for e, slip in zip(self.rub_rows, self.slips(place).tolist(), strict=True):
             if abs(slip) > self.slow:
-                self.direction[k] = float(np.sign(slip))
+                self.direction[e] = float(np.sign(slip))
+        self.heading = {e: v for e, v in self.heading.items() if self.closed[e]}
+        self.heading |= self.touching(place)
 
     def hidden(self, a: Place, b: Place) -> bool:
         """Whether a contact may close and open again inside a step, or the other way round, or a

@@ -25,7 +25,7 @@ from trsim.solve.march.features import next_time
 from trsim.solve.outcome import Block, Outcome, settings
 from trsim.solve.path.begin import begin, check
 from trsim.solve.path.between import Between
-from trsim.solve.path.changes import RUB, Change, Looks, bottoms, stability
+from trsim.solve.path.changes import RUB, WATCH, Change, Looks, bottoms, stability
 from trsim.solve.path.fold import fold
 from trsim.solve.path.headings import (
     CLOSE_AHEAD,
@@ -228,15 +228,14 @@ class Path:
             eq.anchor = eq.anchor if found is not None else far
         if found is None:
             found = eq.solved(t, y, lam, place.inverse)
+        found = found or eq.solved_sticking(t, y, lam, place, self.looks.slow)
         if found is None:
             return None
         far, off = self.way(place.y, found[0]), self.way(y, found[0])
-        if within:
-            return eq.place(t, *found) if far <= within else None
-        if far > FAR or off > max(ASTRAY * far, BESIDE):
+        if far > within if within else far > FAR or off > max(ASTRAY * far, BESIDE):
             return None
         there = eq.place(t, *found)
-        if there is None or self.looks.hidden(place, there):
+        if there is None or (not within and self.looks.hidden(place, there)):
             return None
         if eq.turning and not turns and self.slides(there):
             for _ in range(2 if eq.surfaces else 1):
@@ -310,8 +309,10 @@ class Path:
         """The first place at which something has changed, and what."""
         low = place
         while trial.t - low.t > SAME * self.end:
-            within = 2.0 * self.way(low.y, trial.y) + BESIDE
-            middle = self.reached(low, 0.5 * (low.t + trial.t), within)
+            # where friction turns, directions are those of one step all the way
+            start = place if self.eq.turning else low
+            within = 2.0 * self.way(start.y, trial.y) + BESIDE
+            middle = self.reached(start, 0.5 * (low.t + trial.t), within)
             if middle is None:
                 break
             found = self.changed(middle)
@@ -341,6 +342,9 @@ class Path:
         if all(change.kind == RUB for change in changes) and changes:
             anchored(self.eq, place, self.every, least=0.0)
             self.results.turned = True
+            return place
+        if all(change.kind == WATCH for change in changes) and changes:
+            self.goes_on(place)  # smoothly
             return place
         looks.hold_all(place)
         found = eq.solved(place.t, place.y, place.lam, None)
@@ -408,11 +412,10 @@ class Path:
     def accept(self, place: Place, trial: Place, smooth: bool) -> None:
         """Keep the place that was known last, with accelerations by those next to it."""
         self.kept(place, trial, smooth)
-        self.before = place
         work = self.eq.work
         poses(work, trial.y)
         work.branch[:] = work.S[:, 0]
-        self.looks.directions(trial)
+        self.log.go_on(trial)
         self.before = place
         if not smooth:
             self.kept(trial, None)

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 FIRST = 1e-4  # of the time between rows: how far ahead the direction of the start is taken
 SURE = 100.0  # times what full sliding takes, or further
 FASTER = 1e4  # times the way: what slides that much slower than the rest slides in full, too
+STUCK = 1e-3  # of full friction: less is none
 MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
 ONCE = 1.001  # times that way: what rested before has not gone further
 CLOSE_AHEAD = 10.0 * MOVED  # a place so near tells no direction
@@ -44,8 +45,11 @@ def directed(eq: Equations, place: Place, every: float) -> Place:
         return place
     first, h = slice(eq.work.n_q, eq.work.n_q + eq.n), FIRST * every
     while True:
-        there = eq.at_time(place.y, place.t, place.t + h)
-        found = eq.solved(place.t + h, there, place.lam, None)
+        t = place.t + h
+        found = eq.solved(t, eq.at_time(place.y, place.t, t), place.lam, None)
+        if found is None:  # what touches may roll
+            there = eq.at_time(eq.moved(place.y, h * place.v), place.t, t)
+            found = eq.solved_sticking(t, there, place.lam, place, 0.0)
         if found is None:
             return place
         ahead = found[0].copy()
@@ -54,7 +58,8 @@ def directed(eq: Equations, place: Place, every: float) -> Place:
             break
         h *= 10.0
     y = place.y.copy()
-    y[first] = FASTER * ahead[first]
+    rolls = max(eq.stuck(ahead).values(), default=0.0) > STUCK / FASTER
+    y[first] = ahead[first] * (1.0 if rolls else FASTER)
     eq.frozen = True
     again = eq.solved(place.t, y, found[1], None)
     at_start = eq.place(place.t, *again) if again is not None else None
@@ -75,7 +80,11 @@ def anchored(
     most = went.max(initial=0.0)
     if most <= least:
         return
-    rests = (np.abs(place.v / eq.unit) * every <= RAMP) & (went > RAMP)
+    still = np.abs(place.v / eq.unit) * every <= RAMP
+    rests = still & (went > RAMP)
+    d = eq.work.d
+    turns = ~still.reshape(-1, d)[:, 2 if d == 3 else 3 :].all(axis=1)  # then it slides by that
+    rests.reshape(-1, d)[turns, : 2 if d == 3 else 3] = False
     stops = rests & (went > ONCE * MOVED)
     kept = np.where(rests, 1.0, 0.0)
     kept[stops] = MOVED / went[stops].max(initial=MOVED)

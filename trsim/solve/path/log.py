@@ -22,6 +22,7 @@ TOLD = 0.05  # of the largest force of a drive: what inertia may add untold
 SHOWN = 4  # coordinates of joints in a sentence
 FAR = {"angle": 0.5, "stroke": 0.1}  # rad, and of the mechanism's size: no longer where it was put
 NEXT_TO = 100.0  # of the time in which functions are differentiated: for rates of channels
+SOON = 1e-3  # of the time between rows: what turned round may not slide in full so soon
 BOTH = 1.5  # signs beyond it are those of places where nothing is free
 
 
@@ -36,6 +37,7 @@ class Log:
         self.status: Ended = "done"
         self.reason = ""
         self.falls: list[tuple[float, str]] = []
+        self.turning: list[tuple[float, Change, Any]] = []  # what turns round, see `go_on`
         self.letting_go: list[UserEvent] = []  # events that let drives go at this place
         self.hands_over = False  # what user events do, see phase.py
         self.due: list[tuple[int, float]] = []  # those that happen here, with the rate then
@@ -52,17 +54,34 @@ class Log:
         elif change.kind == RIM:
             kind, row = rec.CORNER, looks.whose(looks.rims[change.which] + HELD_OF_TABLE)
         elif change.kind == RUB:
-            looks.direction[change.which] = change.to
-            kind, row = rec.TURNS, int(self.eq.work.rubbing[change.which, 0])
+            self.turning.append((place.t, change, looks.came[change.which]))
         elif change.kind == SENSE:
             self.unstable(place, change)
         elif change.kind == WATCH:
             change = self.with_rate(place, change)
             kind, row = self.happened(place, change)
-        known = [line[:3].tolist() for line in self.events]
-        if row >= 0 and [place.t, kind, row] not in known:
+        if row >= 0:
+            self.line(place.t, kind, row, change.rate)
+
+    def line(self, t: float, kind: float, row: int, rate: float) -> None:
+        """A line of the table, once."""
+        if [t, kind, row] not in [line[:3].tolist() for line in self.events]:
             self.count += 1
-            self.events.append(np.array([place.t, kind, row, change.rate, np.nan, 0.0, 0.0]))
+            self.events.append(np.array([t, kind, row, rate, np.nan, 0.0, 0.0]))
+
+    def go_on(self, place: Place) -> None:
+        """Take directions of sliding at the next place.  What turned round before has a line if it
+        slides there; what sticks goes on later, or back.  A place next to it does not tell."""
+        waiting = []
+        for t, change, before in self.turning:
+            if self.looks.slides(place, change.which):
+                self.line(t, rec.TURNS, change.which, change.rate)
+            elif place.t - t > SOON * self.results.every:
+                self.looks.put_back(change.which, before)
+            else:
+                waiting.append((t, change, before))
+        self.turning = waiting
+        self.looks.directions(place)
 
     def with_rate(self, place: Place, change: Change) -> Change:
         """The same with the rate of what is watched; where it has none of its own, as a channel,

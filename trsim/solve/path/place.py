@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.dense import least_squares
+from trsim.assemble.dense import least_squares, length
 from trsim.assemble.equations import largest_wrench, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
@@ -30,7 +30,18 @@ from trsim.elements.contract import (
 from trsim.elements.prescribed import AnyDrive, rates_along
 from trsim.elements.scene import Scene, scene
 from trsim.laws.friction import CODES
-from trsim.solve.path.balance import LOADS, ROOM, SLOWNESS, STATE, TIME, system, travel, unbalanced
+from trsim.solve.path.balance import (
+    BY_SPEED,
+    LOADS,
+    ROOM,
+    SLOWNESS,
+    STATE,
+    TIME,
+    system,
+    travel,
+    unbalanced,
+)
+from trsim.solve.path.touching import Touching
 
 Array = NDArray[np.float64]
 
@@ -38,6 +49,7 @@ SLOW = 1e-12  # of the way: what velocities are while forces are asked for
 RAMP = 1e-9  # of the mechanism's size: sliding over more is full sliding
 STEP = 1e-7  # of the mechanism's size, rad: differences
 IN_RAMP = 1e-6  # the same of sliding, of its ramp
+ENOUGH = 0.2  # and of the way: what rounding makes of a difference of speeds is a millionth
 IN_GAP = 1e-4  # and of a clearance
 ALONE = 1e-10  # relative size of a row that is not independent
 LOAD = 1e-6  # and of multipliers, of the largest
@@ -135,6 +147,7 @@ class Equations:
         # surfaces that slide in several ways at once, whose direction turns
         self.surfaces = rough_surfaces(mechanism, w)
         self.sleeves = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
+        self.touching = Touching(mechanism, w)
         self.turning = self.sleeves or (w.d == 6 and len(self.surfaces) > 0)
         self.stiffest = 0.0  # N*m, of the matrix made last
         self.frozen = False  # velocities of a state are as they are
@@ -179,6 +192,11 @@ class Equations:
         A = np.zeros((self.n + self.m, self.n + self.m))
         self.steps[2] = LOAD * max(float(np.abs(lam).max(initial=0.0)), 1e-3 * self.load)
         self.steps[TIME] = t
+        if self.rubs:
+            rates = y[self.work.n_q : self.work.n_q + self.n]
+            far = float(np.abs(rates / self.unit).max(initial=0.0)) / SLOW
+            part = min(max(IN_RAMP, ENOUGH * far), 0.1)
+            self.steps[BY_SPEED] = part * SLOW * RAMP * self.work.size
         self.room[STATE, : len(y)], self.room[LOADS, : len(lam)] = y, lam
         system(self.work, self.pressing, self.steps, self.room, A)
         return A
@@ -235,6 +253,32 @@ class Equations:
             before, last, fresh = (far, far, False) if part == 1.0 else (np.inf, np.inf, False)
             inverse = inverse if part == 1.0 else None
         return None
+
+    def solved_sticking(self, t: float, y: Array, lam: Array, place: Place, slow: float) -> Any:
+        """As `solved`, where what touches without sliding at a place before goes on to stick."""
+        sticks = {*self.stuck(place.y)} | {e for e, v in self.sliding(place) if length(v) <= slow}
+        sticks -= self.touching.tables
+        if not sticks:
+            return None
+        with self.touching.on_ramps(sticks):
+            found = self.solved(t, y, lam, place.inverse)
+        if found is None:
+            return None
+        y, lam = found
+        return self.solved(t, y, lam, None)
+
+    def stuck(self, y: Array) -> dict[int, float]:
+        """What touches with friction that is not full at the velocities of y, and its part."""
+        poses(self.work, y)
+        full = SLOW * RAMP * self.work.size
+        return {e: length(v) / full for e, v in self.touching.slips() if length(v) < full}
+
+    def sliding(self, place: Place) -> list[tuple[int, Array]]:
+        """Sliding velocities of what touches, along the path."""
+        w, y = self.work, place.y.copy()
+        y[w.n_q : w.n_q + self.n] = place.v
+        poses(w, y)
+        return list(self.touching.slips())
 
     def multipliers(self, t: float, y: Array) -> Array:
         """Those that come nearest to a balance at y, without the friction that they make."""

@@ -10,7 +10,8 @@ Every s is reached by Newton's method,
     [ J  0   ] [ lam new ] = [ -Phi        ]
 
 with the tangent of the bars as it is, and of all else by differences.  A step that leaves more
-motions unstable is too long: beyond, a bar has buckled.
+motions unstable is too long: beyond, a bar has buckled.  Where something might pass through what is
+thin, steps begin at the balance before, and are cut there (passages.py).
 """
 
 from math import prod
@@ -33,9 +34,11 @@ from trsim.elements.scene import Scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.start.angles import remember
 from trsim.solve.start.elastic import acted_on, elastic_stiffness, softened_bars, without_bars
+from trsim.solve.start.passages import Passages
 from trsim.solve.start.statics import (
     check_stable,
     free_motions,
+    free_part,
     probe,
     static_forces,
     wrenches_at_rest,
@@ -59,12 +62,14 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     Raises ModelError where there is none, or where nothing holds a motion.
     """
     work = workspace(mechanism.model)
+    passages = Passages(mechanism, work)
     lam: Array = np.zeros(work.m)
     done, ahead, allowed, failed = 0.0, FIRST, work.n_v, False
     way = [(done, y)]
     while done < 1.0:
         to = min(1.0, done + ahead)
-        found = balanced(Parts(mechanism, work, to), drawn_on(way, to), lam, allowed)
+        guess = y if passages.ways else drawn_on(way, to)
+        found = balanced(Parts(mechanism, work, to, passages), guess, lam, allowed)
         if isinstance(found, float):
             ahead, failed = found * (to - done), True
             if ahead < SHORTEST:
@@ -105,7 +110,10 @@ def growth(turns: int, failed: bool) -> float:
 class Parts:
     """The mechanism with bars softened by s, and what of it is differentiated how."""
 
-    def __init__(self, mechanism: Mechanism, work: Scene, s: float) -> None:
+    def __init__(
+        self, mechanism: Mechanism, work: Scene, s: float, passages: Passages | None = None
+    ) -> None:
+        self.passages = passages or Passages(mechanism, work)
         self.work = softened_bars(mechanism, work, s)
         self.others = without_bars(self.work)
         self.acted = acted_on(mechanism, at_rest=True)
@@ -139,7 +147,11 @@ def balanced(
         far = max(float(each[:, :3].max()) / work.size, float(each[:, 3:].max()))
         if not far < TURN:  # not a number, too
             return max(0.1, 0.7 * TURN / far) if turn == 0 and np.isfinite(far) else 0.5
-        y, lam = displaced(work, y, dq), x[len(x) - work.m :]
+        part = free_part(parts.passages, y, dq)
+        y, lam = displaced(work, y, part * dq), x[len(x) - work.m :]
+        if part < 1.0:
+            last = np.inf
+            continue
         if far < CLOSE:
             count = unstable(K, J)
             return (y, lam, count, turn + 1) if count <= allowed else 0.5
