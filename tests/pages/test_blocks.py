@@ -5,14 +5,13 @@ benchmarks/gallery/tutorial.py says what the marks of a block mean.
 
 import re
 import shutil
-from itertools import count
 
 import pytest
 
 from benchmarks.docs.marks import ROOT, pages
 from benchmarks.gallery.tutorial import SCENES, Ended, follow
+from tests import drawn
 from trsim.cli import main
-from trsim.report import figures, style
 
 PAGES = {page.name: page for page in pages()}
 FENCE = re.compile(r"^ *```(.*)$", re.MULTILINE)
@@ -31,7 +30,6 @@ KINDS = {
     "json": {"shown"},
     "python": {""},
 }
-DOTS = 40  # an inch of a figure, which nobody looks at here
 # what was there before a page is read: commands
 BEFORE = {
     "commands.md": ("run slider_crank.yaml",),
@@ -46,21 +44,6 @@ BEFORE = {
 def blocks(text: str) -> list[str]:
     """What stands behind the fences that begin blocks."""
     return FENCE.findall(text)[::2]
-
-
-def once(monkeypatch):
-    """Of a page each kind of figure is drawn once, and of each report its first: what all of them
-    look like is looked at in tests/report."""
-    everything, seen = figures.everything, set()
-
-    def few(runs):
-        for k, (name, figure) in zip(count(), everything(runs), strict=False):
-            kind = name.partition("_")[0]
-            if k == 0 or kind not in seen:
-                yield name, figure
-            seen.add(kind)
-
-    monkeypatch.setattr(figures, "everything", few)
 
 
 def typer(capsys):
@@ -92,9 +75,7 @@ def test_a_page_can_be_followed(name, tmp_path, monkeypatch, capsys):
     shutil.copytree(SCENES, tmp_path, dirs_exist_ok=True)
     (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(style, "DPI", DOTS)
-    monkeypatch.setattr(style, "SLIDES", style.SLIDES._replace(dpi=DOTS))
-    once(monkeypatch)
+    drawn.few(monkeypatch)
     typed = typer(capsys)
     for line in BEFORE.get(name, ()):
         assert typed(line.split())[0] == 0, line

@@ -1,0 +1,23 @@
+"""Figures where it matters that they are made, and not what they look like (tests/report does)."""
+
+from itertools import count
+
+from trsim.report import figures, style
+
+DOTS = 40  # an inch
+
+
+def few(monkeypatch):
+    """From now on figures have few dots; each kind is drawn once, and of each report its first."""
+    everything, seen = figures.everything, set()
+
+    def chosen(runs):
+        for k, (name, figure) in zip(count(), everything(runs), strict=False):
+            kind = name.partition("_")[0]
+            if k == 0 or kind not in seen:
+                yield name, figure
+            seen.add(kind)
+
+    monkeypatch.setattr(figures, "everything", chosen)
+    monkeypatch.setattr(style, "DPI", DOTS)
+    monkeypatch.setattr(style, "SLIDES", style.SLIDES._replace(dpi=DOTS))
