@@ -11,7 +11,7 @@ from typing import get_args
 import pytest
 from jsonschema import Draft202012Validator, SchemaError
 
-from tests import drawn, small
+from tests import drawn, inside, small
 from tests.cli.conftest import SCHEMAS, faults
 from tests.store import outside
 from trsim.assemble.assemble import assemble
@@ -123,8 +123,10 @@ def folder(prepared, scenario):
 
 
 @pytest.fixture
-def document(trsim):
+def document(trsim, monkeypatch):
     """Runs a command line with --json, and holds what it says to the contract."""
+    inside.sweeps(monkeypatch)
+    inside.recovering(monkeypatch)
 
     def told(*arguments, code=0, command=None):
         ended, out, err = trsim(*arguments, "--json")

@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks.docs.marks import ROOT, pages
 from benchmarks.gallery.tutorial import SCENES, Ended, follow
-from tests import drawn
+from tests import drawn, inside
 from trsim.cli import main
 
 PAGES = {page.name: page for page in pages()}
@@ -76,6 +76,9 @@ def test_a_page_can_be_followed(name, tmp_path, monkeypatch, capsys):
     (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
     monkeypatch.chdir(tmp_path)
     drawn.few(monkeypatch)
+    inside.sweeps(monkeypatch)
+    # a bench measures each setting from one first step, in place of three
+    monkeypatch.setattr("trsim.analyse.precision.FIRST_STEPS", (1.0,))
     typed = typer(capsys)
     for line in BEFORE.get(name, ()):
         assert typed(line.split())[0] == 0, line
