@@ -30,7 +30,7 @@ FILES = {  # scenario: mutants of it
     SCENARIOS / "validation" / "four_bar_3d.yaml": size(226, 47_500),  # a release is looked for
     SCENARIOS / "validation" / "pendulum_3d.yaml": size(600, 47_500),
 }
-STRUCTURES = size(200, 50_000)
+STRUCTURES = size(400, 50_000)
 PARTS = range(size(2, 5))  # of each kind of mutant, with dice of its own: they run side by side
 PIECES = [b"{", b"}", b"[", b"]", b":", b",", b"-", b"#", b"&a ", b"*a", b"!!x ", b"|", b"'", b'"',
           b"\n", b"\t", b" ", b"0", b"9", b"e9", b"-1", b"1e999", b".nan", b"null", b"\x00",
