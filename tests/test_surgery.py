@@ -30,7 +30,7 @@ from trsim.store import checkpoint
 from trsim.sweeps.ledger import Entry
 
 ROOT = Path(__file__).parent.parent
-FILES, LEDGERS, CHECKPOINTS = size(36, 2_000), size(200, 2_000), size(36, 2_000)
+FILES, LEDGERS, CHECKPOINTS = size(36, 2_000), size(200, 2_000), size(60, 2_000)
 PARTS = range(2)
 ENDS = {0, 2, 3, 4, 5, 7}
 
