@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 import pytest
 
-from tests import small
+from tests import drawn, inside, small
 from tests.surgery import ended
 from trsim.errors import ScenarioError, TrsimError
 from trsim.scenario.load import loads
@@ -297,7 +297,9 @@ def test_a_hash_tells_a_damaged_file_from_a_bug(whole, tmp_path, monkeypatch):
     assert (code, "values of stroke that are no numbers" in said) == (7, True)
 
 
-def test_a_recovered_file_without_rows(whole, tmp_path):
+def test_a_recovered_file_without_rows(whole, tmp_path, monkeypatch):
+    drawn.few(monkeypatch, of_each=True)
+    inside.recovering(monkeypatch)
     part = tmp_path / "x.h5.part"
     shutil.copy(whole, part)
 

@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -29,11 +30,19 @@ WORDS = {
 }
 
 
-def abroad(root: Path) -> Iterator[tuple[str, ast.AST]]:
+@cache
+def abroad(root: Path) -> list[tuple[str, ast.AST]]:
     """The modules outside the rooms that may name single elements, and their sources."""
-    for name, path in modules(root).items():
-        if not name.startswith(AT_HOME):
-            yield name, ast.parse(path.read_text())
+    return [
+        (name, ast.parse(path.read_text()))
+        for name, path in modules(root).items()
+        if not name.startswith(AT_HOME)
+    ]
+
+
+def called(function: ast.AST) -> str:
+    """The last name of what is called."""
+    return getattr(function, "attr", getattr(function, "id", ""))
 
 
 def named(tree: ast.AST) -> Iterator[tuple[int, str]]:
@@ -45,7 +54,7 @@ def named(tree: ast.AST) -> Iterator[tuple[int, str]]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Compare):
             asked |= {part for side in (node.left, *node.comparators) for part in ast.walk(side)}
-        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("load"):
+        elif isinstance(node, ast.Call) and called(node.func).endswith("load"):
             asked |= {*node.args}
     for node in ast.walk(tree):
         key = node.value if isinstance(node, ast.Constant) else ""

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import trsim
-from tests import small
+from tests import drawn, inside, small
 from tests.store import outside
 from trsim.cli import main
 
@@ -356,7 +356,8 @@ def test_what_a_notebook_shows(here, drop):
     assert "done" in repr(drop)
 
 
-def test_figures(drop, here):
+def test_figures(drop, here, monkeypatch):
+    drawn.few(monkeypatch)
     found = drop.plot("ball.position.y : ball.position.x", window="0..1")
     assert [one.png[:8] for one in found] == [b"\x89PNG\r\n\x1a\n"]
     assert found[0]._repr_png_() == found[0].png
@@ -399,7 +400,8 @@ def test_sweep(here):
     assert len(trsim.Sweep("swept")) == 4
 
 
-def test_a_sweep_that_fails(here):
+def test_a_sweep_that_fails(here, monkeypatch):
+    inside.sweeps(monkeypatch)
     set = {"solver.method": ["dop853", "rk4"], "solver.force": True, "solver.step": "0.05 ms"}
     error = fails(trsim.CasesFailed, lambda: trsim.sweep("crank.yaml", "s", set=set, jobs=1))
     assert error.exit_code == 6 and len(error.result) == 2

@@ -9,7 +9,7 @@ from contextlib import redirect_stdout
 import h5py
 import pytest
 
-from tests import mechanisms, small
+from tests import inside, mechanisms, small
 from tests.cli.conftest import faults
 from tests.cli.test_contract import changed, mappings
 from trsim.cli import main
@@ -40,6 +40,22 @@ def alone(folder, *options):
     document = json.loads(out.getvalue())
     assert faults(document, "run") == []
     return document["runs"][0]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The run of the scenario as it is, certified, as its document tells it, and its file."""
+    folder = tmp_path_factory.mktemp("certified")
+    return alone(folder), folder / "runs/crank.h5"
+
+
+@pytest.fixture
+def done(whole, scenario):
+    """What is told of that run, with its file where a run of the scenario is written to."""
+    told, file = whole
+    (scenario.parent / "runs").mkdir()
+    shutil.copy(file, scenario.parent / "runs")
+    return told
 
 
 @pytest.fixture(scope="module")
@@ -184,15 +200,16 @@ def test_runs_that_an_event_ends(scenario, answer):
 # --- what does not work out ------------------------------------------------------------------
 
 
-def test_a_twin_that_fails_says_when(scenario, answer, trsim):
-    told = certified(answer, "crank.yaml", "--certify", "--set", "solver.max_steps=500")
-    assert told["status"] == "done"
+def test_a_twin_that_fails_says_when(scenario, trsim):
+    code, out, err = trsim("run", "crank.yaml", "--certify", "--set", "solver.max_steps=500",
+                           "--json")  # fmt: skip
+    told = json.loads(out)["runs"][0]
+    assert (code, told["status"]) == (0, "done")
+    assert "the twin failed at t = " in err
     twin = told["certificate"]
     assert (twin["status"], twin["reason"]) == ("failed", "more than 500 steps")
     assert 0.0 < twin["compared_until"] <= twin["time"] < 3e-3
     assert twin["difference"] < 0.01
-    code, _, err = trsim("run", "crank.yaml", "--certify", "--set", "solver.max_steps=500")
-    assert code == 0 and "the twin failed at t = " in err
 
 
 def test_a_run_that_fails_is_certified_until_then(scenario, answer):
@@ -230,8 +247,8 @@ def test_without_motion_nothing_is_known(pendulum, answer, trsim):
 # --- what it keeps ---------------------------------------------------------------------------
 
 
-def test_the_content_is_that_of_an_uncertified_run(scenario, answer):
-    first = certified(answer, "crank.yaml", "--certify")
+def test_the_content_is_that_of_an_uncertified_run(done, scenario, answer):
+    first = done
     assert names(scenario.parent) == {"crank.h5"}
     plain = certified(answer, "crank.yaml", "-o", "x.h5")
     assert first["content_sha256"] == plain["content_sha256"]
@@ -245,18 +262,17 @@ def test_the_content_is_that_of_an_uncertified_run(scenario, answer):
     assert "certificate" not in plain and read("x.h5").certificate is None
 
 
-def test_damage_is_noticed(scenario, trsim):
-    trsim("run", "crank.yaml", "--certify")
+def test_damage_is_noticed(done):
     assert verify("runs/crank.h5")
     with h5py.File("runs/crank.h5", "r+") as file:
         file["certificate"].attrs["apart"] = 0.1
     assert not verify("runs/crank.h5")
 
 
-def test_other_commands_on_a_certified_file(scenario, trsim, answer, monkeypatch):
+def test_other_commands_on_a_certified_file(done, trsim, answer, monkeypatch):
     # its page and its tables are enough
     monkeypatch.setattr("trsim.report.figures.draw", lambda *_: [])
-    trsim("run", "crank.yaml", "--certify", "--set", *small.FEW)
+    inside.recovering(monkeypatch)
     assert trsim("export", "runs/crank.h5", "--csv", "--channels", "stroke")[0] == 0
     with open("runs/crank.csv") as file:
         assert len(list(csv.reader(file))) == 302
@@ -288,7 +304,7 @@ def expected(tmp_path_factory):
 
 
 @pytest.mark.parametrize("of_twin", [True, False])
-def test_interrupted_and_resumed(of_twin, expected, scenario, trsim, answer, monkeypatch):
+def test_interrupted_and_resumed(of_twin, expected, scenario, trsim, answer, monkeypatch, at_once):
     with monkeypatch.context() as patch:
         interrupt(patch, of_twin)
         assert trsim("run", "crank.yaml", *LONG, "--certify")[0] == 130

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests import small
+from tests import drawn, small
 from tests.store import outside
 from trsim.cli import COMMANDS
 from trsim.store.read import read, verify
@@ -229,7 +229,8 @@ def test_check_finds_redundant_rows(scenario, answer):
     assert found["mobility"] == 0
 
 
-def test_show_and_report(scenario, trsim, answer):
+def test_show_and_report(scenario, trsim, answer, monkeypatch):
+    drawn.few(monkeypatch)
     trsim("run", "crank.yaml", "-o", "x.h5", "--set", *small.FEW)
     code, out, _ = trsim("show", "x.h5")
     assert code == 0

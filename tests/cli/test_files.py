@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import pytest
 
-from tests import small
+from tests import inside, small
 from tests.store import outside
 from trsim.store.read import read, verify
 
@@ -115,7 +115,7 @@ def test_verify(result, answer, trsim):
 # --- recover ---------------------------------------------------------------------------------
 
 
-def test_recover(scenario, trsim, answer):
+def test_recover(scenario, trsim, answer, monkeypatch):
     process = outside.begun(scenario.parent)
     outside.blocks_until(process, 0.7)
     outside.killed(process)
@@ -125,6 +125,7 @@ def test_recover(scenario, trsim, answer):
     assert read("runs/crank.recovered.h5").attributes["status"] == "recovered"
     for command in (("show",), ("export", "--csv", "--channels", "stroke")):
         assert trsim(*command, "runs/crank.recovered.h5")[0] == 0
+    inside.recovering(monkeypatch)  # what was read above does not end its reader
     code, document = answer("recover", "runs/crank.h5.part", "-o", "x.h5")
     assert code == 0
     assert document["rows"] == read("x.h5").rows > 0

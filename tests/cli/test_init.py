@@ -1,12 +1,15 @@
 """trsim init: every template is written, checks, and its commands are those one can type."""
 
 import os
+import re
 import shlex
 from importlib import import_module
 from pathlib import Path
 
 import pytest
 
+from tests import drawn, inside
+from tests.sizes import RELEASE
 from trsim.scenario.load import load
 from trsim.scenario.shipped import FOLDERS, TEMPLATES, template
 
@@ -70,11 +73,26 @@ def test_commands_are_told_as_in_the_file(name, answer):
         assert made.params
 
 
+def shorter(command):
+    """A sweep with the first and the last of its cases; else as it is."""
+    _, verb, *words = shlex.split(command)
+    if verb == "sweep" and not RELEASE:
+        words = [re.sub(r"(lin\(.*), \d+\)$", r"\1, 2)", word) for word in words]
+    return [verb, *words]
+
+
+def test_a_sweep_is_made_shorter():
+    line = 'trsim sweep x.yaml --set "parameters.tilt=lin(10deg, 22deg, 5)" -o y'
+    assert RELEASE or shorter(line)[3:] == ["parameters.tilt=lin(10deg, 22deg, 2)", "-o", "y"]
+
+
 @pytest.mark.parametrize("name", ALONE)
-def test_commands_can_be_typed(name, trsim, answer):
+def test_commands_can_be_typed(name, trsim, answer, monkeypatch):
     """One after the other, in the folder that was written."""
+    drawn.few(monkeypatch)
+    inside.sweeps(monkeypatch)
     for command in answer("init", name)[1]["commands"]:
-        code, _, err = trsim(*shlex.split(command)[1:])
+        code, _, err = trsim(*shorter(command))
         assert code == 0, (command, err)
         assert "warning" not in err, (command, err)
 

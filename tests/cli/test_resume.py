@@ -89,7 +89,7 @@ def test_a_full_disk_says_what_is_left(scenario, trsim, monkeypatch):
     assert "`trsim run crank.yaml --resume` goes on with the run." in err
 
 
-def test_goes_on(interrupted, scenario, answer):
+def test_goes_on(interrupted, scenario, answer, at_once):
     kept = load(interrupted)
     code, document = answer("run", "crank.yaml", *LONG, "--resume")
     assert code == 0
@@ -120,7 +120,7 @@ def test_a_start_of_another_shape(name, interrupted, trsim):
     assert code == 7 and f"does not fit this run: start.{name}" in err
 
 
-def test_a_run_that_was_killed_when_it_had_just_ended(interrupted, scenario, trsim):
+def test_a_run_that_was_killed_when_it_had_just_ended(interrupted, scenario, trsim, at_once):
     """Its file is complete and has its name; only the checkpoint was not removed yet."""
     part = interrupted.with_name("crank.h5.part")
     part.rename(interrupted.with_name("crank.h5"))

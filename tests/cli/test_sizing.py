@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from tests import inside
 from trsim.store.read import read
 
 G = 9.81
@@ -51,6 +52,7 @@ def test_errors(answer, tmp_path, monkeypatch):
 
 def test_a_sweep_of_sizings(answer, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    inside.sweeps(monkeypatch)
     (tmp_path / "lever.yaml").write_text(LEVER)
     code, _ = answer("sweep", "lever.yaml", "--set", "bodies.rod.mass=[1, 3]", "-j", "1", "-o", "s")
     assert code == 0

@@ -2,10 +2,17 @@
 
 import pytest
 
+from tests import drawn, inside
 from trsim.sweeps.study import study
 
 B = "joints.B.clearance"
 FAST = ("--set", "solver.end=0.5 ms", "-j", "1", "-o", "sw")
+
+
+@pytest.fixture
+def within(monkeypatch):
+    """Cases run in this process."""
+    inside.sweeps(monkeypatch)
 
 
 def test_made_explained_and_told(scenario, trsim):
@@ -31,7 +38,7 @@ def test_made_explained_and_told(scenario, trsim):
     assert 'the scenario changed: solver.end is "0.6 ms", was "0.5 ms"' in out
 
 
-def test_failed_cases(scenario, trsim, answer):
+def test_failed_cases(scenario, trsim, answer, within):
     sets = ("--set", "solver.max_steps=[3, 100000]", *FAST)
     code, _, err = trsim("sweep", "crank.yaml", *sets)
     assert code == 6
@@ -51,7 +58,7 @@ def test_limits(scenario, trsim):
     assert out == "end=1000s: tried again: over time\n"
 
 
-def test_shards(scenario, trsim):
+def test_shards(scenario, trsim, within):
     vary = ("sweep", "crank.yaml", "--set", f"{B}=lin(0.4 mm, 0.5 mm, 3)", *FAST)
     assert trsim(*vary, "--shard", "1/2")[0] == 0
     assert [case.status for case in study("sw").cases] == ["done", "missing", "done"]
@@ -119,7 +126,7 @@ def test_nothing_to_vary(scenario, trsim):
     assert code == 2 and "says nothing to vary" in err
 
 
-def test_into_the_folder_of_a_report(scenario, trsim):
+def test_into_the_folder_of_a_report(scenario, trsim, within):
     """By default a report of runs/NAME.h5 and a sweep of NAME.yaml have one folder."""
     assert trsim("run", "crank.yaml", "--set", "solver.end=0.5 ms", "-o", "sw.h5")[0] == 0
     assert trsim("report", "sw.h5", "--plot", "time : time")[0] == 0
@@ -138,7 +145,8 @@ def test_no_sweep_there(scenario, trsim):
     assert code == 7 and "no such folder" in err
 
 
-def test_bars_and_envelope(scenario, trsim, answer):
+def test_bars_and_envelope(scenario, trsim, answer, within, monkeypatch):
+    drawn.few(monkeypatch)
     assert trsim("sweep", "crank.yaml", "--set", f"{B}=[0.4 mm, 0.5 mm]", *FAST)[0] == 0
     code, told = answer("report", "sw", "--bars", "peak:A.reaction", "--envelope",
                         "--at", "stroke", "--with", "motor.force,|A.reaction|")  # fmt: skip

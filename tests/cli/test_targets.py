@@ -8,7 +8,7 @@ import stat
 import h5py
 import pytest
 
-from tests import small
+from tests import inside, small
 from tests.elsewhere import needs
 from tests.store import outside
 from trsim.errors import FileError, UsageError
@@ -28,8 +28,9 @@ QUICK = ("--methods", "dop853", "--tolerances", "1e-3", "--reference", "dop853:1
 
 
 @pytest.fixture
-def folder(scenario):
+def folder(scenario, monkeypatch):
     """A scenario, its result, and a table of loads, in the current folder."""
+    inside.recovering(monkeypatch)
     small.copy(scenario.parent / "x.h5", *small.FEW)
     (scenario.parent / "load.csv").write_text("time [s],force [N]\n0,1\n1,2\n")
     (scenario.parent / "crlf.csv").write_bytes(b"time [s],force [N]\r\n0,1\r\n1,2\r\n")

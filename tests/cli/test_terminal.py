@@ -7,7 +7,7 @@ import warnings
 import h5py
 import pytest
 
-from tests import small
+from tests import drawn, inside, small
 from trsim.cli import main
 
 # title, screen, line, cursor, colour in one byte, direction, line of Unicode, delete
@@ -23,8 +23,9 @@ def seen(text):
 
 
 @pytest.fixture
-def said(trsim):
+def said(trsim, monkeypatch):
     """Runs a command line, plain and with --json; all that is printed is looked at."""
+    inside.recovering(monkeypatch)
 
     def command(*words, code=None):
         for more in ((), ("--json",)):
@@ -116,7 +117,7 @@ def channels(file):
 @pytest.mark.parametrize("change", [attributes, texts, channels])
 def test_texts_of_a_result_file(change, scenario, said):
     path = scenario.parent / "x.h5"
-    small.copy(path, *small.FEW)
+    small.copy(path, *small.FEW, "solver.end=1.5 ms", "output.every=0.1 ms")
     with h5py.File(path, "r+") as file:
         change(file)
     said("show", "x.h5")
@@ -127,7 +128,8 @@ def test_texts_of_a_result_file(change, scenario, said):
 
 
 @pytest.mark.filterwarnings("ignore:Glyph")
-def test_texts_in_figures(scenario, said):
+def test_texts_in_figures(scenario, said, monkeypatch):
+    drawn.few(monkeypatch)
     path = scenario.parent / "x.h5"
     small.copy(path, "output.channels=[stroke]")  # the title is in every figure
     with h5py.File(path, "r+") as file:

@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 import pytest
 
-from tests import small
+from tests import inside, small
 from trsim.cli import main
 from trsim.store import hdf5
 from trsim.store.read import read
@@ -88,7 +88,7 @@ def unbroken(tmp_path_factory):
 
 
 @pytest.mark.parametrize("after", [0.5e-3, 1.2e-3, 2.0e-3])
-def test_resumed_between_events(events, unbroken, trsim, answer, monkeypatch, after):
+def test_resumed_between_events(events, unbroken, trsim, answer, monkeypatch, after, at_once):
     take = hdf5.Running.take
 
     def interrupt(run, block):
@@ -104,7 +104,8 @@ def test_resumed_between_events(events, unbroken, trsim, answer, monkeypatch, af
     assert resumed["content_sha256"] == unbroken
 
 
-def test_recovered(events, trsim, answer):
+def test_recovered(events, trsim, answer, monkeypatch):
+    inside.recovering(monkeypatch)
     trsim("run", "crank.yaml", "-o", "x.h5")
     document = answer("recover", "x.h5", "-o", "y.h5")[1]
     assert document["exit_code"] == 0

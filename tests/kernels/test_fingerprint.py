@@ -6,6 +6,7 @@ import pkgutil
 import re
 import subprocess
 import sys
+from collections import defaultdict
 from enum import IntEnum
 from functools import cache, partial
 from importlib import import_module
@@ -184,11 +185,11 @@ def other(value):
 def test_another_value_of_any_constant_changes_the_keys_of_all_kernels_that_read_it(told):
     before = {kernel: told(kernel) for kernel in kernels()}
     everything = set().union(*(reached(kernel.python) for kernel in kernels()))
-    places = {(id(scope), name): (scope, name) for p in everything for scope, name in read(p)}
-    readers = {
-        place: {p for p in everything if any((id(s), n) == place for s, n in read(p))}
-        for place in places
-    }
+    places, readers = {}, defaultdict(set)
+    for python in everything:
+        for scope, name in read(python):
+            places[id(scope), name] = scope, name
+            readers[id(scope), name].add(python)
     missed, changed = [], 0
     for place, (scope, name) in places.items():
         value = scope[name]

@@ -10,8 +10,8 @@ import pytest
 
 from benchmarks.docs.marks import ROOT, pages
 from benchmarks.gallery.tutorial import SCENES, Ended, follow
+from tests import drawn, inside
 from trsim.cli import main
-from trsim.report import style
 
 PAGES = {page.name: page for page in pages()}
 FENCE = re.compile(r"^ *```(.*)$", re.MULTILINE)
@@ -30,7 +30,6 @@ KINDS = {
     "json": {"shown"},
     "python": {""},
 }
-DOTS = 40  # an inch of a figure, which nobody looks at here
 # what was there before a page is read: commands
 BEFORE = {
     "commands.md": ("run slider_crank.yaml",),
@@ -76,8 +75,10 @@ def test_a_page_can_be_followed(name, tmp_path, monkeypatch, capsys):
     shutil.copytree(SCENES, tmp_path, dirs_exist_ok=True)
     (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(style, "DPI", DOTS)
-    monkeypatch.setattr(style, "SLIDES", style.SLIDES._replace(dpi=DOTS))
+    drawn.few(monkeypatch)
+    inside.sweeps(monkeypatch)
+    # a bench measures each setting from one first step, in place of three
+    monkeypatch.setattr("trsim.analyse.precision.FIRST_STEPS", (1.0,))
     typed = typer(capsys)
     for line in BEFORE.get(name, ()):
         assert typed(line.split())[0] == 0, line

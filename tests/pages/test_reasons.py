@@ -3,6 +3,7 @@
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 
 import pytest
 
@@ -67,7 +68,9 @@ def sentences(tree: ast.AST) -> Iterator[str]:
             yield text
 
 
+@cache
 def said() -> list[str]:
+    """Six thousand lines are parsed for it, once."""
     found = [text for path in FILES for text in sentences(ast.parse(path.read_text("utf-8")))]
     return [*found, *REASONS.values()]
 
@@ -79,6 +82,7 @@ def rows(section: str) -> list[list[str]]:
     return [[cell.strip() for cell in row] for row in rows[2:]]
 
 
+@cache
 def phrases() -> list[str]:
     """What the page says that a run says."""
     where = ("Reasons of a failed run", "Ends of a static path", "Warnings of a finished run")

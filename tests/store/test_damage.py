@@ -16,7 +16,7 @@ from tests.store.outside import ROOT, started
 from trsim.store.hdf5 import read
 
 CUTS = size(60, 1_000)
-FLIPS = size(250, 10_000)  # bytes
+FLIPS = size(140, 10_000)  # bytes
 NOTICED = 0.99  # of the changes of contents
 
 # Reads damaged copies of a file: argv = original, work file, kind, first case, end.
