@@ -42,6 +42,13 @@ def without_pictures(monkeypatch):
     monkeypatch.setattr("trsim.report.figures.draw", lambda *_: [])
 
 
+@pytest.fixture
+def few_pictures(monkeypatch):
+    """The first figures are enough; test_figures compares all of them."""
+    every = figures.everything
+    monkeypatch.setattr(figures, "everything", lambda runs: islice(every(runs), 2))
+
+
 def page(folder):
     text = (folder / "index.html").read_text(encoding="utf-8")
     return text, Seen(text)
@@ -68,10 +75,7 @@ def test_everything_of_a_run(tmp_path):
     assert not re.search(r"(src|href)=\"(http|//|[a-z_]+\.png)", text)
 
 
-def test_the_same_to_the_byte_wherever_it_is_made(tmp_path, monkeypatch):
-    """Of the figures the first ones are enough; test_figures compares all of them."""
-    every = figures.everything
-    monkeypatch.setattr(figures, "everything", lambda runs: islice(every(runs), 3))
+def test_the_same_to_the_byte_wherever_it_is_made(tmp_path, few_pictures):
     small.copy(tmp_path / "x.h5", *small.FEW)
     report(tmp_path / "x.h5", tmp_path / "a")
     report(tmp_path / "x.h5", tmp_path / "b/c")
@@ -91,10 +95,7 @@ def test_other_kinds_of_figures_are_in_it_too(form, kind, tmp_path):
         assert base64.b64decode(src.partition("base64,")[2]).startswith(begin)
 
 
-def test_several_runs(tmp_path):
-    paths = [tmp_path / "a.h5", tmp_path / "b.h5"]
-    for path, clearance in zip(paths, ("0.5mm", "0.1mm"), strict=True):
-        small.run(path, f"joints.B.clearance={clearance}", *small.FEW)
+def test_several_runs(paths, tmp_path, few_pictures):
     report(paths, tmp_path)
     seen = page(tmp_path)[1]
     assert [kind for _, kind in seen.kinds].count("animation") == 2
