@@ -55,7 +55,7 @@ def page(folder):
 
 
 def test_everything_of_a_run(tmp_path):
-    small.run(tmp_path / "x.h5", text=SPRUNG)
+    small.copy(tmp_path / "x.h5", text=SPRUNG)
     written = report(tmp_path / "x.h5", tmp_path / "r")
     assert written[-1].name == "index.html"
     text, seen = page(tmp_path / "r")
@@ -85,7 +85,7 @@ def test_the_same_to_the_byte_wherever_it_is_made(tmp_path, few_pictures):
 @pytest.mark.parametrize("form, kind", [("pdf", "png"), ("svg", "svg+xml")])
 def test_other_kinds_of_figures_are_in_it_too(form, kind, tmp_path):
     text = SPRUNG.replace("every: 5 ms", "every: 5 ms, channels: [strut.force, block.position]")
-    small.run(tmp_path / "x.h5", text=text)
+    small.copy(tmp_path / "x.h5", text=text)
     written = report(tmp_path / "x.h5", tmp_path / "r", Looks(form=form))
     seen = page(tmp_path / "r")[1]
     assert len(seen.images) == len([path for path in written if path.suffix == f".{form}"]) - 1 > 1
@@ -106,10 +106,10 @@ def test_several_runs(paths, tmp_path, few_pictures):
 def test_a_run_that_cannot_be_animated(tmp_path, without_pictures):
     """Without places of bodies, or with a scenario that is not understood any more."""
     text = SPRUNG.replace("every: 5 ms", "every: 5 ms, channels: [height, strut.force]")
-    small.run(tmp_path / "x.h5", text=text)
+    small.copy(tmp_path / "x.h5", text=text)
     report(tmp_path / "x.h5", tmp_path / "a")
     assert any("No animation: " in one for one in page(tmp_path / "a")[1].texts)
-    small.run(tmp_path / "y.h5", text=SPRUNG)
+    small.copy(tmp_path / "y.h5", text=SPRUNG)
     with h5py.File(tmp_path / "y.h5", "r+") as file:
         del file["scenario/resolved"]
         file["scenario/resolved"] = '{"bodies": {"block": {"weight": 1}}}'
@@ -120,7 +120,7 @@ def test_a_run_that_cannot_be_animated(tmp_path, without_pictures):
 def test_names_are_text(tmp_path, without_pictures):
     """What is in a title is no markup."""
     text = SPRUNG.replace("Mass on springs", "'<script>alert(1)</script> & co'")
-    small.run(tmp_path / "x.h5", text=text)
+    small.copy(tmp_path / "x.h5", text=text)
     report(tmp_path / "x.h5", tmp_path)
     assert "<script>alert" not in page(tmp_path)[0]
 
