@@ -1,6 +1,6 @@
 """A scenario that runs in a few milliseconds and has everything a result file can hold."""
 
-from functools import cache
+from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -48,15 +48,15 @@ def run(path: Path, *sets: str, text: str = SLIDER_CRANK) -> dict[str, Any]:
     return write(path, scenario, mechanism, simulate(scenario, mechanism), Around("test"))
 
 
-@cache
-def content(*sets: str) -> bytes:
+@lru_cache(maxsize=128)
+def content(*sets: str, text: str = SLIDER_CRANK) -> bytes:
     """What stands in the file of such a run, which is made once in a process."""
     with TemporaryDirectory() as folder:
-        run(Path(folder) / "run.h5", *sets)
+        run(Path(folder) / "run.h5", *sets, text=text)
         return (Path(folder) / "run.h5").read_bytes()
 
 
-def copy(path: Path, *sets: str) -> None:
+def copy(path: Path, *sets: str, text: str = SLIDER_CRANK) -> None:
     """A result file for those to whom it does not matter which process wrote it, and when."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content(*sets))
+    path.write_bytes(content(*sets, text=text))

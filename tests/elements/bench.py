@@ -5,6 +5,7 @@ world's.  Poses are then chosen at random, or on the manifold of a joint.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -121,11 +122,17 @@ class Bench:
         return self.scene().zd[:N_BOOK].copy()
 
 
+@lru_cache(maxsize=256)
+def assembled(text: str) -> Mechanism:
+    """The mechanism of a text, made once: poses and memory are in each Bench, nothing is in it."""
+    return built(text)
+
+
 def bench(
     text: str, rng: np.random.Generator, bodies: str = TWO_BODIES, speed: float = 1.0
 ) -> Bench:
     """The mechanism of a text, its bodies thrown into random poses and twists."""
-    mechanism = built(bodies + text)
+    mechanism = assembled(bodies + text)
     n = mechanism.model.n
     r, V = rng.normal(size=(n, 3)), speed * rng.normal(size=(n, 6))
     p = rng.normal(size=(n, 4))

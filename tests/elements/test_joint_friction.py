@@ -5,6 +5,8 @@ jams from mu = l/(2 a) on; and a rod that slides along a rough line has no motio
 friction outweighs what moves it [Painleve1895].
 """
 
+import math
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -187,15 +189,15 @@ output: {{channels: ["*"]}}
 """)
 
     def rate(_, y):
-        phi, w = y
-        s, c = np.sin(phi), np.cos(phi)
+        phi, w = y.tolist()
+        s, c = math.sin(phi), math.cos(phi)
 
         def left(alpha):  # torque about the pin less (I + m l^2) alpha, w < 0
-            R = m * np.array([-l * w**2 * c - l * alpha * s, -l * w**2 * s + l * alpha * c + G])
-            return -m * G * l * c + mu * r0 * np.hypot(*R) - (I + m * l**2) * alpha
+            x, y = -l * w**2 * c - l * alpha * s, -l * w**2 * s + l * alpha * c + G
+            return -m * G * l * c + mu * r0 * m * math.hypot(x, y) - (I + m * l**2) * alpha
 
         alpha = 0.0
-        for _ in range(200):
+        for _ in range(20):  # each is 36 times closer, (I + m l^2) / (mu r0 m l)
             alpha += left(alpha) / (I + m * l**2)
         return [w, alpha]
 
@@ -610,11 +612,16 @@ def crank(solver="tolerance: 1e-9", mu=0.1, more=""):
     return more + CRANK.replace("FRICTION", law(SLIDING, mu)).replace("SOLVER", solver)
 
 
+@pytest.fixture(scope="module")
+def exact_crank():
+    return run(crank("tolerance: 1e-11"))
+
+
 @pytest.mark.parametrize("method", [m for m in METHODS if m != "rk4"])
-def test_a_slider_crank_that_rubs_everywhere(method):
+def test_a_slider_crank_that_rubs_everywhere(method, exact_crank):
     """Each friction with the loads of the others: with the reactions told, to rounding."""
     solver, error = METHODS[method]
-    r = run(crank(solver))
+    r = run(crank(solver.replace("1e-9", "1e-7") if method == "scipy:Radau" else solver))
     radii = {"a": 0.02, "b": 0.015, "c": 0.01, "d": 1.0}
     for name, radius in radii.items():
         F = r[f"{name.upper()}.reaction"]
@@ -623,8 +630,7 @@ def test_a_slider_crank_that_rubs_everywhere(method):
             load = load_of_slide(r)
         assert r[f"{name}.normal_force"] == pytest.approx(load, rel=1e-9, abs=1e-9)
         check_law(r, name, 0.1 * radius, radius)
-    exact = run(crank("tolerance: 1e-11"))
-    assert r["turn"] == pytest.approx(exact["turn"], abs=max(30 * error, 1e-6))
+    assert r["turn"] == pytest.approx(exact_crank["turn"], abs=max(30 * error, 1e-6))
     assert energy_error(r) < max(100 * error, 1e-7)
 
 

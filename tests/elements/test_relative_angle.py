@@ -85,7 +85,7 @@ sensors: {{x: {{type: relative_angle, bodies: [{bodies}], axis: {axis}, at_start
 solver: {{end: 5, method: {method}}}
 output: {{every: 0.5}}
 """
-METHODS = ("dop853", "radau", "generalized_alpha, step: 0.01", "rk4, step: 0.01", "scipy:RK45")
+METHODS = ("dop853", "radau", "generalized_alpha, tolerance: 1e-4", "rk4, step: 0.01", "scipy:RK45")
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -63,7 +63,7 @@ output: {{every: 0.05}}
 METHODS = ["method: dop853, tolerance: 1e-9", "method: radau, tolerance: 1e-9",
            "method: auto, tolerance: 1e-9", "method: 'scipy:RK45', tolerance: 1e-9",
            "method: rk4, step: 1 ms",
-           "method: generalized_alpha, tolerance: 1e-8"]  # fmt: skip
+           "method: generalized_alpha, tolerance: 1e-6"]  # fmt: skip
 
 
 def lined(law, v=0.0, end=2, method=METHODS[0]):

@@ -14,7 +14,7 @@ VALIDATION = Path(__file__).parents[2] / "scenarios" / "validation"
 
 
 def of(folder, *sets, text=small.SLIDER_CRANK):
-    small.run(folder / "run.h5", *sets, text=text)
+    small.copy(folder / "run.h5", *sets, text=text)
     return read(folder / "run.h5")
 
 

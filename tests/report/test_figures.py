@@ -12,6 +12,7 @@ from trsim.errors import FileError
 from trsim.report import report
 from trsim.report.display import compared, differences, display_units, short
 from trsim.report.figures import contact_force, contact_history, motion
+from trsim.report.looks import Looks
 from trsim.report.orbits import orbit
 from trsim.report.style import STRETCHES, look, thinned
 from trsim.report.tables import peak_loads
@@ -22,6 +23,7 @@ EXPECTED = {
     *("phase_B", "phase_stroke", "phase_crank_angle", "poincare_journal", "energy", "peaks"),
     *("body_crank", "body_rod", "body_slider"),
 }
+COARSE = Looks(dpi=75)  # pixels are looked at in shares only
 MORE = {"phase_B", "phase_crank_angle", "body_rod", "body_slider"}  # of a kind that is there too
 
 
@@ -39,7 +41,7 @@ def reports(paths, tmp_path_factory):
     two = [folder / "a.h5", folder / "b.h5"]
     for path, clearance in zip(two, ("0.5mm", "0.1mm"), strict=True):
         small.run(path, f"joints.B.clearance={clearance}", *small.FEW)
-    return report(paths[0], folder / "one"), report(two, folder / "two")
+    return report(paths[0], folder / "one", COARSE), report(two, folder / "two", COARSE)
 
 
 @pytest.mark.parametrize("several", [False, True])
@@ -59,14 +61,14 @@ joints: {pivot: {type: revolute, bodies: [ground, bob], at: [0, 0]}}
 solver: {end: 1 s, tolerance: 1e-6}
 """
     small.run(tmp_path / "run.h5", text=text)
-    written = {path.name for path in report(tmp_path / "run.h5", tmp_path)}
+    written = {path.name for path in report(tmp_path / "run.h5", tmp_path, COARSE)}
     assert written == {"body_bob.png", "energy.png", "peaks.csv", "peaks.png", "index.html"}
 
 
 def test_failed_run_is_reported_as_far_as_it_came(tmp_path):
     text = small.SLIDER_CRANK.replace("method: dop853", "method: rk4, force: true, step: 0.05 ms")
     small.run(tmp_path / "run.h5", *small.FEW, text=text)
-    assert len(report(tmp_path / "run.h5", tmp_path / "figures")) > 5
+    assert len(report(tmp_path / "run.h5", tmp_path / "figures", COARSE)) > 5
     [shown] = compared([read(tmp_path / "run.h5")])
     with look():
         assert "(failed)" in motion([shown], "stroke").get_suptitle()
@@ -175,7 +177,8 @@ def test_what_cannot_be_reported_is_told(paths, tmp_path):
 def test_a_report_is_the_same_every_time_and_needs_no_solver(paths, reports, tmp_path):
     """In a process of its own.  Nor pyplot, which would look for a screen."""
     code = (
-        "import sys; from trsim.report import report; report(sys.argv[1], sys.argv[2]); "
+        "import sys; from trsim.report import report; from trsim.report.looks import Looks; "
+        f"report(sys.argv[1], sys.argv[2], {COARSE!r}); "
         "assert not {'numba', 'pandas', 'matplotlib.pyplot', 'trsim.solve'} & set(sys.modules)"
     )
     root = Path(__file__).parents[2]

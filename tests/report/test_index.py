@@ -42,13 +42,20 @@ def without_pictures(monkeypatch):
     monkeypatch.setattr("trsim.report.figures.draw", lambda *_: [])
 
 
+@pytest.fixture
+def few_pictures(monkeypatch):
+    """The first figures are enough; test_figures compares all of them."""
+    every = figures.everything
+    monkeypatch.setattr(figures, "everything", lambda runs: islice(every(runs), 2))
+
+
 def page(folder):
     text = (folder / "index.html").read_text(encoding="utf-8")
     return text, Seen(text)
 
 
 def test_everything_of_a_run(tmp_path):
-    small.run(tmp_path / "x.h5", text=SPRUNG)
+    small.copy(tmp_path / "x.h5", text=SPRUNG)
     written = report(tmp_path / "x.h5", tmp_path / "r")
     assert written[-1].name == "index.html"
     text, seen = page(tmp_path / "r")
@@ -68,10 +75,7 @@ def test_everything_of_a_run(tmp_path):
     assert not re.search(r"(src|href)=\"(http|//|[a-z_]+\.png)", text)
 
 
-def test_the_same_to_the_byte_wherever_it_is_made(tmp_path, monkeypatch):
-    """Of the figures the first ones are enough; test_figures compares all of them."""
-    every = figures.everything
-    monkeypatch.setattr(figures, "everything", lambda runs: islice(every(runs), 3))
+def test_the_same_to_the_byte_wherever_it_is_made(tmp_path, few_pictures):
     small.copy(tmp_path / "x.h5", *small.FEW)
     report(tmp_path / "x.h5", tmp_path / "a")
     report(tmp_path / "x.h5", tmp_path / "b/c")
@@ -81,7 +85,7 @@ def test_the_same_to_the_byte_wherever_it_is_made(tmp_path, monkeypatch):
 @pytest.mark.parametrize("form, kind", [("pdf", "png"), ("svg", "svg+xml")])
 def test_other_kinds_of_figures_are_in_it_too(form, kind, tmp_path):
     text = SPRUNG.replace("every: 5 ms", "every: 5 ms, channels: [strut.force, block.position]")
-    small.run(tmp_path / "x.h5", text=text)
+    small.copy(tmp_path / "x.h5", text=text)
     written = report(tmp_path / "x.h5", tmp_path / "r", Looks(form=form))
     seen = page(tmp_path / "r")[1]
     assert len(seen.images) == len([path for path in written if path.suffix == f".{form}"]) - 1 > 1
@@ -91,10 +95,7 @@ def test_other_kinds_of_figures_are_in_it_too(form, kind, tmp_path):
         assert base64.b64decode(src.partition("base64,")[2]).startswith(begin)
 
 
-def test_several_runs(tmp_path):
-    paths = [tmp_path / "a.h5", tmp_path / "b.h5"]
-    for path, clearance in zip(paths, ("0.5mm", "0.1mm"), strict=True):
-        small.run(path, f"joints.B.clearance={clearance}", *small.FEW)
+def test_several_runs(paths, tmp_path, few_pictures):
     report(paths, tmp_path)
     seen = page(tmp_path)[1]
     assert [kind for _, kind in seen.kinds].count("animation") == 2
@@ -105,10 +106,10 @@ def test_several_runs(tmp_path):
 def test_a_run_that_cannot_be_animated(tmp_path, without_pictures):
     """Without places of bodies, or with a scenario that is not understood any more."""
     text = SPRUNG.replace("every: 5 ms", "every: 5 ms, channels: [height, strut.force]")
-    small.run(tmp_path / "x.h5", text=text)
+    small.copy(tmp_path / "x.h5", text=text)
     report(tmp_path / "x.h5", tmp_path / "a")
     assert any("No animation: " in one for one in page(tmp_path / "a")[1].texts)
-    small.run(tmp_path / "y.h5", text=SPRUNG)
+    small.copy(tmp_path / "y.h5", text=SPRUNG)
     with h5py.File(tmp_path / "y.h5", "r+") as file:
         del file["scenario/resolved"]
         file["scenario/resolved"] = '{"bodies": {"block": {"weight": 1}}}'
@@ -119,7 +120,7 @@ def test_a_run_that_cannot_be_animated(tmp_path, without_pictures):
 def test_names_are_text(tmp_path, without_pictures):
     """What is in a title is no markup."""
     text = SPRUNG.replace("Mass on springs", "'<script>alert(1)</script> & co'")
-    small.run(tmp_path / "x.h5", text=text)
+    small.copy(tmp_path / "x.h5", text=text)
     report(tmp_path / "x.h5", tmp_path)
     assert "<script>alert" not in page(tmp_path)[0]
 

@@ -78,15 +78,23 @@ def test_units_of_a_scenario():
 MADE_BY = {"pdf": b"/Creator (trsim)", "svg": b"<dc:title>trsim</dc:title>", "png": b"trsim"}
 
 
+@pytest.fixture(scope="module")
+def narrow(tmp_path_factory):
+    """The same with what gives three figures: each is drawn twice of every kind."""
+    path = tmp_path_factory.mktemp("narrow") / "door.h5"
+    small.run(path, "output.channels=[door_angle, handle.force]", text=DOOR)
+    return path
+
+
 @pytest.mark.parametrize("form", MADE_BY)
-def test_figures_made_again_are_the_same_to_the_byte(form, door, tmp_path, monkeypatch):
-    first = report(door, tmp_path, Looks(form=form))
+def test_figures_made_again_are_the_same_to_the_byte(form, narrow, tmp_path, monkeypatch):
+    first = report(narrow, tmp_path, Looks(form=form))
     pictures = {path: path.read_bytes() for path in first if path.suffix == f".{form}"}
     assert len(pictures) >= 3
     for path in pictures:
         os.utime(path, (1.0, 1.0))
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "4000000000")
-    assert report(door, tmp_path, Looks(form=form)) == first
+    assert report(narrow, tmp_path, Looks(form=form)) == first
     for path, data in pictures.items():
         assert path.stat().st_mtime > 1.0  # its own are replaced
         assert data == path.read_bytes()
@@ -95,7 +103,7 @@ def test_figures_made_again_are_the_same_to_the_byte(form, door, tmp_path, monke
     path, data = next(iter(pictures.items()))
     path.write_bytes(data[:20])
     with pytest.raises(UsageError, match="exists and is not a figure"):
-        report(door, tmp_path, Looks(form=form))
+        report(narrow, tmp_path, Looks(form=form))
 
 
 def test_size_and_dots(door, tmp_path):

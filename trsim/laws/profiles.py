@@ -2,17 +2,12 @@
 
 Where a line turns by the angle 2 a an arc of radius R takes the place of R tan a on both sides of
 the corner.  It is round where the line turns away from the free side, hollow where it turns to it.
-
-The ball through p and q that has the normal n of the line at p has the radius
-
-    |q - p|^2 / (2 n . (q - p))
-
-The least of them over all p and q is the largest ball that touches no second place.
 """
 
 from math import acos, ceil, cos, inf, log2, pi, tan
 from typing import Any, NamedTuple
 
+from trsim.laws.fitting import LEVEL, NEXT, fits
 from trsim.laws.surfaces import EDGE, HEAD, HOLLOW, ROUND, STRAIGHT
 
 SAME = 1e-9  # of the size of a profile: places that are one
@@ -20,13 +15,11 @@ PLAIN = 1e-7  # rad: what turns by less goes straight on
 BACK = 1e-6  # rad: what turns by so little less than half a turn turns back on itself
 SAMPLES, LEAST = 1000, 8  # places along a profile, for its reach, and along each piece
 SURE = 0.8  # of the ball that fits as those places tell: such a one fits indeed
-NEXT = 1e-6  # of its size: where one piece ends and the next begins
 FEW = 16  # pieces: they are looked at one by one
 EACH = 4  # of more: pieces of a leaf, at most
 MOST = 20_000  # pieces of a spline
 STILL = 1e-9  # of the rate along a spline by its chords: it stands still there
 FLAT = 1e-7  # rad: an arc that turns by less is straight
-LEVEL = 1e-6  # of a distance: what rises so little above the tangent is on it
 
 
 class Flaw(ValueError):
@@ -110,8 +103,13 @@ def meets_itself(p: Any) -> bool:
         along = np.sum((w - u) * d, axis=-1) / np.sum(d * d, axis=-1)
         return np.linalg.norm(w - u - np.clip(along, 0.0, 1.0)[..., None] * d, axis=-1)
 
+    low, high = np.minimum(p, q) - near, np.maximum(p, q) + near
     for k in range(n - 2):  # each pair once; the last side is a neighbour of the first
-        others = slice(k + 2, n if k else n - 1)
+        those = slice(k + 2, n if k else n - 1)
+        beside = np.all((low[those] <= high[k]) & (high[those] >= low[k]), axis=1)
+        others = k + 2 + np.flatnonzero(beside)  # far from the rest: their boxes are apart
+        if not len(others):
+            continue
         a, b, c, d = p[k], q[k], p[others], q[others]
         cross = (left(a, b, c) * left(a, b, d) < 0.0) & (left(c, d, a) * left(c, d, b) < 0.0)
         if cross.any() or (far(a, b, c) <= near).any() or (far(c, d, a) <= near).any():
@@ -455,24 +453,3 @@ def blocks(pieces: list[tuple[float, ...]], step: float = 0.0) -> list[tuple[Any
 def length_of(piece: tuple[float, ...]) -> float:
     """How long a piece is, m."""
     return piece[5] if piece[0] == STRAIGHT else 2.0 * piece[3] * acos(piece[6])
-
-
-def fits(places: Any, normals: Any) -> float:
-    """Radius of the largest ball that touches a profile in one place only, wherever it does."""
-    return float(least_balls(places, normals).min(initial=inf))
-
-
-def least_balls(places: Any, normals: Any) -> Any:
-    """The same of the ball at each of the places, in the direction of its normal."""
-    import numpy as np
-
-    size = float(np.linalg.norm(np.ptp(places, axis=0)))
-    found = np.full(len(places), inf)
-    for k, (place, normal) in enumerate(zip(places, normals, strict=True)):
-        d = places - place
-        square = np.einsum("ij,ij->i", d, d)
-        above = d @ normal
-        seen = (above > LEVEL * np.sqrt(square)) & (square > (NEXT * size) ** 2)
-        if seen.any():
-            found[k] = (square[seen] / (2.0 * above[seen])).min()
-    return found
