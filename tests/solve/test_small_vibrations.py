@@ -133,7 +133,8 @@ def off_of(r, axis, ways, exact):
     for first in range(0, SLOW_SEEDS if method in SLOW else SEEDS, TOGETHER)
 ])  # fmt: skip
 def test_a_small_vibration_beside_a_larger_motion(method, first):
-    worst = {seed: off(seed, method) for seed in range(first, first + TOGETHER)}
+    every = size(3, 1) if "scipy" in method else 1  # with those of SLOW_SEEDS
+    worst = {seed: off(seed, method) for seed in range(first, first + TOGETHER, every)}
     wrong = {seed: x for seed, x in worst.items() if not x.max() < ALLOWED}
     assert not wrong
 
