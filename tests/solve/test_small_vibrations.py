@@ -169,7 +169,7 @@ def test_accelerations_that_steps_are_not_held_to_are_doubted(method, first):
     silent, false = {}, {}
     for seed in range(first, min(first + TOGETHER, FAINT_SEEDS)):
         text, *true = drawn(seed, faint=True)
-        r = run(text, *by(method))
+        r = run(text, *by(method), MOTION)
         worst = off_of(r, *true).max()
         if doubted(r) and worst < TOLD:
             false[seed] = worst
