@@ -136,7 +136,7 @@ sensors: {way: {joint: ring}}
 poincare: {round: {when: way.rate, crosses: both, plot: [way, way.rate]}}
 events: {far: {when: way, value: -1, crosses: down, do: {record: true}}}
 gravity: [0, -9.81, 0]
-solver: {end: 3}
+solver: {end: 1}
 """
 DRUM = CURVES.replace(
     "{body: wheel, at: [0, 0]}", "{body: wheel, at: [0, 0], radius: 5 cm, turn: right}"

@@ -150,7 +150,7 @@ def test_a_part_that_ends_between_the_branches_hides_no_change():
 def test_nothing_is_said_where_branches_meet(number, method, R):
     for tolerance in ("1e-2", "1e-4", "1e-6"):
         sets = (*METHODS[method], f"solver.tolerance={tolerance}")
-        r = run(flat(number, "", R, end=5.0), *turning(number, 6.0, R), *sets, MOTION)
+        r = run(flat(number, "", R, end=size(1, 5)), *turning(number, 6.0, R), *sets, MOTION)
         assert not told(r), tolerance
 
 
@@ -171,7 +171,7 @@ def test_no_first_step_hides_a_change(method):
     back to the joints then does most of the energy, and says that branches nearly meet.
     """
     rng, wrong = np.random.default_rng(11), 0
-    for _ in range(size(12, 1500)):
+    for _ in range(size(12 if method == "generalized_alpha" else 8, 1500)):
         R = SPACES[str(rng.choice(list(SPACES)))]
         drawn, branches = [(upright, of_cranks), (crank_and_rod, of_rod)][rng.integers(2)]
         longer = 10.0 ** -float(rng.integers(5, 10))
@@ -193,7 +193,7 @@ def test_a_motion_that_lost_its_speed_is_not_called_right():
     """Extremes next to such a place are chance, and the motion behind it is another one."""
     made, sets = upright(1e-9, SPACES["plane"])
     found = 0
-    for first in np.geomspace(1e-3, 1.0, 12):
+    for first in np.geomspace(1e-3, 1.0, 12)[:: size(2, 1)]:
         ways = ("solver.method=radau", "solver.tolerance=1.1e-6", f"solver.first_step={first}")
         r = run(made, *sets, *ways, SHORTER[upright], fails=None)
         said = list(doubts(r.scenario, r.mechanism, r.outcome))
@@ -238,7 +238,7 @@ def test_two_mechanisms_flat_at_once_one_of_them_nearly():
 def stopped_upright(longer, R):
     """Cranks stopped where they next are flat."""
     made, sets = upright(longer, R)
-    ends = (f"solver.end={np.pi / 4}", "solver.tolerance=1e-10", "solver.max_step=1e-3")
+    ends = (f"solver.end={np.pi / 4}", "solver.tolerance=1e-10", "solver.max_step=1e-2")
     return run(made, *sets, *ends, MOTION, fails=None)
 
 

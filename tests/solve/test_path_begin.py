@@ -28,7 +28,7 @@ solver: {end: 1, method: static_path}
      (SLIDE, 2.0, True)],
 )  # fmt: skip
 def test_a_balance_far_from_where_the_joint_was_put_is_told(text, place, told):
-    r = run(text.replace("PLACE", str(place)))
+    r = run(text.replace("PLACE", str(place)), "output.every=0.5")
     name = "bar.position" if text is BAR else "block.position"
     assert r[name][-1][0] == pytest.approx(0.0, abs=1e-9)
     found = [w for w in r.outcome.said if "under `initial`" in w]

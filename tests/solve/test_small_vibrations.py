@@ -133,7 +133,8 @@ def off_of(r, axis, ways, exact):
     for first in range(0, SLOW_SEEDS if method in SLOW else SEEDS, TOGETHER)
 ])  # fmt: skip
 def test_a_small_vibration_beside_a_larger_motion(method, first):
-    worst = {seed: off(seed, method) for seed in range(first, first + TOGETHER)}
+    every = size(3, 1) if "scipy" in method else 1  # with those of SLOW_SEEDS
+    worst = {seed: off(seed, method) for seed in range(first, first + TOGETHER, every)}
     wrong = {seed: x for seed, x in worst.items() if not x.max() < ALLOWED}
     assert not wrong
 
@@ -168,7 +169,7 @@ def test_accelerations_that_steps_are_not_held_to_are_doubted(method, first):
     silent, false = {}, {}
     for seed in range(first, min(first + TOGETHER, FAINT_SEEDS)):
         text, *true = drawn(seed, faint=True)
-        r = run(text, *by(method))
+        r = run(text, *by(method), MOTION)
         worst = off_of(r, *true).max()
         if doubted(r) and worst < TOLD:
             false[seed] = worst

@@ -186,7 +186,7 @@ forces:
   weight: {type: applied_load, body: shaft, at: [0, 0, 0], direction: ACROSS, force: 30}
 gravity: [0, 0, 0]
 solver: {method: static_path, end: 1}
-output: {every: 0.013, channels: ["*"]}
+output: {every: 0.053, channels: ["*"]}
 """
 
 
@@ -229,7 +229,7 @@ contact_laws:
           friction: {law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1 mm/s}}
 gravity: [0, 0, -10]
 solver: {method: static_path, end: 1}
-output: {every: 0.013, channels: ["*"]}
+output: {every: 0.053, channels: ["*"]}
 """
 
 

@@ -122,6 +122,7 @@ def test_the_run_of_a_file_ends_released(tmp_path):
     file = tmp_path / "rod.yaml"
     text = rod().replace("[0.01, 0.02, 0.05]", "0.05")
     text += f"gravity: [0, -{G}]\nsolver: {{method: static_path, end: 1 s}}\n"
+    text += "output: {every: 0.1}\n"
     file.write_text(text, encoding="utf-8", newline="\n")
     result = trsim.run(file, tmp_path / "rod.h5")
     assert result.status == "released"

@@ -19,7 +19,7 @@ output: {{every: {every}, channels: ["*"]}}
 """
 
 
-def path(text, end=1.0, every=0.01, method="static_path", fails=False):
+def path(text, end=1.0, every=0.05, method="static_path", fails=False):
     return run(text + SOLVER.format(method=method, end=end, every=every), fails=fails)
 
 

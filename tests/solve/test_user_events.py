@@ -11,6 +11,7 @@ from trsim.solve.diagnose.doubts import doubts
 from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, EVENT_WORK, USER
 
 from ..runs import energy_error, run
+from ..sizes import size
 
 M, J, L, G = 2.0, 0.05, 0.4, 9.81
 PENDULUM = f"""
@@ -92,7 +93,7 @@ def test_every_method_finds_all_crossings(method, bound):
     """x = 0.1 sin(10 t) crosses 0.05 upwards at (pi/6 + 2 pi k) / 10."""
     text = SWING.replace("end: 1,", f"end: 3, {method},")
     if "generalized_alpha" in method:  # of second order
-        text = text.replace("1e-10", "1e-9")
+        text = text.replace("1e-10", "1e-8")
     r = run(text + "  half: {when: x, value: 50 mm, do: {record: true}}")
     expected = (pi / 6 + 2 * pi * np.arange(5)) / 10
     assert user(r)[:, EVENT_TIME] == pytest.approx(expected, abs=bound)
@@ -109,6 +110,8 @@ def test_every_method_goes_on_with_other_equations(method, bound):
   go: {when: t, value: 0.3, do: {unlock: [slide]}}
 """
     )
+    if "generalized_alpha" in method:  # of second order
+        text = text.replace("1e-10", "1e-9")
     r = run(text)
     t = r.t
     held, free = (t > pi / 60 + 1e-9) & (t < 0.3), t > 0.3
@@ -585,8 +588,14 @@ def test_what_is_unlocked_is_looked_at_again():
     assert len(again) == 1 and r["bend"][-1] == pytest.approx(0.1, abs=rounded(r.events[-1]))
 
 
-@pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha"])
-@pytest.mark.parametrize("tolerance", [1.06e-9, 1.18e-9, 1.45e-9, 1.57e-9, 1.96e-9, 2.5e-9])
+CAUGHT = (1.06e-9, 1.18e-9, 1.45e-9, 1.57e-9, 1.96e-9, 2.5e-9)
+
+
+@pytest.mark.parametrize("tolerance, method", [
+    (tolerance, method)
+    for method in ("dop853", "radau", "generalized_alpha")
+    for tolerance in (CAUGHT[:: size(2, 1)] if method == "generalized_alpha" else CAUGHT)
+])  # fmt: skip
 def test_what_is_unlocked_at_the_value_is_on_neither_side_of_it(tolerance, method):
     """Rounding chose a side, and in a third of such runs what had begun to move was caught at once.
 

@@ -17,6 +17,7 @@ with an array as (0, 0, size, bytes of an entry, data, shape, strides).
 import ctypes
 from collections.abc import Callable
 from contextlib import suppress
+from ctypes import addressof, byref, c_char, c_void_p
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
@@ -36,7 +37,10 @@ LIBRARY = frozenset(
     pow rint round sin sincos sinh sqrt tan tanh tgamma trunc""".split()  # noqa: SIM905
 )
 LETTERS = {"float64": "d", "int64": "lq", "complex128": "D"}  # numpy's
+RECORD, NUMBER = -1, 0  # instead of the dimensions of an argument
+UNREAD = byref(c_void_p())  # where what a function raises is put: its status says enough
 ERRORS = (-1,)  # of a status; above 0: an exception of the function's own
+_at = (c_char * 0).from_buffer  # of no length: any buffer holds it
 made: list["Compiled"] = []  # all functions of modules that were imported
 
 
@@ -126,32 +130,39 @@ class Compiled(Lazy):
         return self.entry
 
     @cached_property
-    def _call(self) -> Any:
-        flat = [part for kind in self.signature.arguments for part in _parts(kind)]
+    def _plan(self) -> tuple[Any, Any, list[tuple[int, str]]]:
+        """The function, the type of its result, and how each argument is passed: dimensions, and
+        letters of its entries.  Asking the signature again took a third of a short call."""
+        returns, wanted = self.signature
+        flat = [part for kind in wanted for part in _parts(kind)]
         prototype = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, *flat)
-        return prototype(self.entry)
+        passed = [
+            (RECORD if kind.fields else kind.dimensions, LETTERS.get(kind.dtype, ""))
+            for kind in wanted
+        ]
+        returned = ctypes.c_int64 if _is_int(returns) else ctypes.c_double
+        return prototype(self.entry), returned, passed
 
     def __call__(self, *arguments: Any) -> Any:
-        returns, wanted = self.signature
-        if len(arguments) != len(wanted):
-            raise TypeError(f"{self.__name__} takes {len(wanted)} arguments")
+        if len(arguments) != len(self.signature.arguments):
+            raise TypeError(f"{self.__name__} takes {len(self.signature.arguments)} arguments")
         if PYTHON:
-            value = super().__call__(*arguments)
+            value, returns = super().__call__(*arguments), self.signature.returns
             return None if value is None else int(value) if _is_int(returns) else float(value)
+        call, returned, passed = self._plan
         flat: list[Any] = []
-        for value, kind in zip(arguments, wanted, strict=True):
-            if kind.fields:
+        for value, (dimensions, letters) in zip(arguments, passed, strict=True):
+            if dimensions == RECORD:
                 flat.append(value.address)
-            elif kind.dimensions:
-                flat += _array(value, kind)
-            else:
+            elif dimensions == NUMBER:
                 flat.append(value)
-        result = (ctypes.c_int64 if _is_int(returns) else ctypes.c_double)()
-        exception = ctypes.c_void_p()
-        status = self._call(ctypes.byref(result), ctypes.byref(exception), *flat)
+            else:
+                flat += _array(value, dimensions, letters)
+        result = returned()
+        status = call(byref(result), UNREAD, *flat)
         if status in ERRORS or status > 0:
             raise RuntimeError(f"{self.__name__} failed with status {status}")
-        return None if returns is None else result.value
+        return None if self.signature.returns is None else result.value
 
 
 class Caller:
@@ -187,13 +198,25 @@ def _parts(kind: Kind) -> list[Any]:
     return [ctypes.c_double if kind.dtype == "float64" else ctypes.c_int64]
 
 
-def _array(value: Any, kind: Kind) -> tuple[int, ...]:
-    """The parts of an array."""
-    if value.ndim != kind.dimensions or value.dtype.char not in LETTERS[kind.dtype]:
-        raise TypeError(f"wanted {kind.name}, got {value.ndim} dimensions of {value.dtype}")
-    if not value.flags.c_contiguous:
-        raise TypeError("an array must be contiguous")
-    return (0, 0, value.size, value.itemsize, address(value), *value.shape, *value.strides)
+def _array(value: Any, dimensions: int, letters: str) -> tuple[int, ...]:
+    """The parts of an array.  What an array is asked for costs more than most calls take."""
+    kind, shape = value.dtype, value.shape
+    if len(shape) != dimensions or kind.char not in letters:
+        raise TypeError(f"wanted {dimensions} of {letters}, got {len(shape)} dimensions of {kind}")
+    try:
+        data = addressof(_at(value))  # refused unless it is contiguous and may be written to
+    except TypeError:
+        if not value.flags.c_contiguous:
+            raise TypeError("an array must be contiguous") from None
+        data = address(value)
+    each = kind.itemsize
+    if dimensions == 1:
+        (size,) = shape
+        return 0, 0, size, each, data, size, each
+    if dimensions == 2:
+        rows, columns = shape
+        return 0, 0, rows * columns, each, data, rows, columns, each * columns, each
+    return (0, 0, value.size, each, data, *shape, *value.strides)
 
 
 # --- files -----------------------------------------------------------------------------------
