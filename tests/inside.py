@@ -17,7 +17,7 @@ def plain(told):
 def sweeps(monkeypatch):
     """From now on cases run in this process, one after the other, without limits."""
 
-    def run(tasks, _jobs, _limits=None, _first_alone=False):
+    def run(tasks, _jobs, _limits=None, _first_alone=False, kept=None):
         for task in tasks:
             yield task, {**plain(job.run(plain(task), lambda: None)), "attempts": 1}
 

@@ -2,7 +2,8 @@
 
 import os
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict, Unpack
 
@@ -14,9 +15,9 @@ from trsim.api.stop import listening
 from trsim.errors import CasesFailed, Problems, TrsimError, UsageError, described, some
 from trsim.scenario.vary import KEEP
 from trsim.sweeps.go import Shard, differing, engine, go
-from trsim.sweeps.ledger import counts, in_a_line
+from trsim.sweeps.ledger import Entry, counts, in_a_line
 from trsim.sweeps.plan import Plan, faults, plan
-from trsim.sweeps.slot import Limits
+from trsim.sweeps.slot import Limits, Slot
 from trsim.system import LIMITS_MEMORY, processors
 
 if TYPE_CHECKING:
@@ -194,9 +195,14 @@ def assembled(hears: Listener, planned: Plan, part: Shard) -> None:
     hears.say(f"{len(mine)} cases are well formed and assemble")
 
 
-def runner(hears: Listener, work: Work) -> Callable[[Any], Any]:
-    """What runs cases: processes of this machine, or the workers of a Dask scheduler."""
+@contextmanager
+def runner(hears: Listener, work: Work) -> Iterator[Callable[[Any], Any]]:
+    """What runs cases: processes of this machine, or the workers of a Dask scheduler.
+
+    The processes stay from batch to batch.
+    """
     how, limits = work.how, Limits(work.how.time_limit, work.how.memory, work.how.retries)
+    slots: list[Slot] = []
 
     def run(tasks: Any) -> Any:
         if how.dask:
@@ -205,9 +211,14 @@ def runner(hears: Listener, work: Work) -> Callable[[Any], Any]:
             return by_dask(tasks, how.dask, limits)
         from trsim.sweeps import local
 
-        return local.run(tasks, how.jobs or processors(), limits, warming(hears, work.planned))
+        alone = warming(hears, work.planned)
+        return local.run(tasks, how.jobs or processors(), limits, alone, kept=slots)
 
-    return run
+    try:
+        yield run
+    finally:
+        for slot in slots:
+            slot.close()
 
 
 def made(hears: Listener, work: Work) -> Made:
@@ -246,7 +257,12 @@ def failures(folder: Path, mine: Any) -> CasesFailed | None:
 
 def run_cases(hears: Listener, work: Work) -> int:
     """Run what is needed; how many cases that were."""
-    going = go(work.planned, work.folder, work.identity, runner(hears, work), work.part)
+    with runner(hears, work) as run:
+        return _heard(hears, work, go(work.planned, work.folder, work.identity, run, work.part))
+
+
+def _heard(hears: Listener, work: Work, going: Generator[Entry | int, None, None]) -> int:
+    """Tell what comes of cases as they end; how many there were."""
     show, n = None, 0
     try:
         for one in going:

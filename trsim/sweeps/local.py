@@ -3,6 +3,7 @@
 import queue
 import threading
 from collections.abc import Iterable, Iterator
+from concurrent.futures import wait
 from typing import Any
 
 from trsim.sweeps.slot import ANY, Limits, Slot
@@ -14,16 +15,19 @@ Task = dict[str, Any]
 
 def run(
     tasks: Iterable[Task], jobs: int, limits: Limits = ANY, first_alone: bool = False,
-    job: str = JOB,
+    job: str = JOB, kept: list[Slot] | None = None,
 ) -> Iterator[tuple[Task, dict[str, Any]]]:  # fmt: skip
     """Each task with how it ended, as they end.
 
-    first_alone: the others wait for the first one, which compiles what all need.  Ended early, by
-    an exception or by closing the generator, it leaves no process behind.
+    first_alone: the others wait for the first one, which compiles what all need.  kept: slots of
+    an earlier call for the same job, or none yet, whose processes stay for the next one; they are
+    the caller's to close.  Ended early, by an exception or by closing the generator, it leaves no
+    process behind.
     """
     waiting, turn = iter(tasks), threading.Lock()
     ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    slots = [Slot(limits, job) for _ in range(jobs)]
+    slots = [] if kept is None else kept
+    slots += [Slot(limits, job) for _ in range(jobs - len(slots))]
     stop, warm = threading.Event(), threading.Event()
 
     def following() -> Task | None:
@@ -41,15 +45,14 @@ def run(
             ended.put(error)
         finally:
             warm.set()
-            slot.close()
+            if kept is None:
+                slot.close()
             ended.put(None)
 
+    # its process ends with the thread that began it, so each slot has one that stays
     threads = [
-        threading.Thread(target=work, args=(slot, k == 0 or not first_alone), daemon=True)
-        for k, slot in enumerate(slots)
+        slot.thread.submit(work, slot, k == 0 or not first_alone) for k, slot in enumerate(slots)
     ]
-    for thread in threads:
-        thread.start()
     at_work = len(threads)
     try:
         while at_work:
@@ -69,5 +72,4 @@ def run(
         if at_work:
             for slot in slots:
                 slot.kill()
-        for thread in threads:
-            thread.join()
+        wait(threads)

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import tempfile
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 from trsim import child
@@ -37,6 +38,7 @@ class Slot:
         self.process: subprocess.Popen[bytes] | None = None
         self.said: Any = None
         self.dead = False
+        self.thread = ThreadPoolExecutor(1)  # for who calls `run` from many
 
     def run(self, task: dict[str, Any]) -> dict[str, Any]:
         """How a case ended, with the number of attempts."""
@@ -90,7 +92,7 @@ class Slot:
     def started(self) -> "subprocess.Popen[bytes]":
         """The process, made unless it is there."""
         if self.process is None or self.process.poll() is not None:
-            self.close()
+            self.let_go()
             command = child.command("trsim.sweeps.worker", str(self.limits.memory), self.job)
             environment = {**os.environ, **dict.fromkeys(ONE_THREAD, "1")}
             self.said = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
@@ -108,6 +110,11 @@ class Slot:
             process.kill()
 
     def close(self) -> None:
+        """Let process and thread end; no call of `run` follows."""
+        self.thread.shutdown(wait=False)
+        self.let_go()
+
+    def let_go(self) -> None:
         """Let the process end."""
         process, self.process = self.process, None
         if process is not None:
