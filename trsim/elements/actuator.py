@@ -1,16 +1,17 @@
-"""Actuator: a ball-ended line of prescribed length between two bodies, rigid or with compliance.
+"""Actuator: a ball-ended strut of prescribed length between two bodies, rigid or compliant.
 
     e = l - l_0                                         stroke; l is the distance of its ends
     rigid       Phi = e - f(t) = 0,  P = -lambda
     compliant   P = -k (e - u) - c (e' - u')            thrust: pushes the ends apart
-    u = f, or with a supply that gives way
+    u = f, or with a compliant supply
     m u'' = -k_s (u - f) - c_s (u' - f') - P + G        piston; G from a shaft, see sync_shaft.py
 
-f is the prescribed stroke or, for a prescribed speed, its integral from the stroke at the start (a
-state of the element; u and u' - f' are two more).  A line of two ball ends takes no moment, so the
-force on body j is P n, with n from end i to end j; where l_0 + u is no length it is no number.  The
-kinetic energy of the piston stands in the book with the springs.  Of the rigid one
-l'' = n . d'' + (d' . d' - l'^2) / l, with d from end i to end j.              [Featherstone2008]
+f is the prescribed stroke or, if a speed is prescribed, its integral from the initial stroke (a
+state of the element; u and u' - f' are two more).  With ball joints at both ends it transmits no
+moment, so the force on body j is P n, with n from end i to end j; it is not a number if l_0 + u is
+not positive.  In the energy balance the kinetic energy of the piston counts with the springs.  For
+the rigid one, l'' = n . d'' + (d' . d' - l'^2) / l, with d from end i to end j.
+[Featherstone2008]
 """
 
 from math import nan
@@ -51,9 +52,10 @@ from trsim.varying import Function
 class Supply(Spec):
     """What lies between the prescribed motion and the piston, such as a column of oil.
 
-    stiffness  of it
-    damping    of it
-    mass       that moves with the piston: its own and, by the square of its ratio, that of a gear
+    stiffness  stiffness of the supply
+    damping    damping of the supply
+    mass       mass that moves with the piston: its own, and the inertia of a gear times the square
+               of its ratio
     """
 
     stiffness: Annotated[float, Gt(0), Unit("N/m")]
@@ -62,18 +64,21 @@ class Supply(Spec):
 
 
 class Actuator(Spec):
-    """A line with a ball at each end that grows with a speed, or to a stroke, of its own.
+    """A straight actuator with a ball joint at each end and a prescribed stroke or speed.
 
     bodies     the two bodies
-    points     its ends on the first and on the second body, as drawn
-    velocity   rate of the stroke
-    position   the stroke, 0 as drawn; give one of the two
-    stiffness  between the piston and the second body, or of all of it; rigid without it
-    damping    the same
-    supply     what lies between the prescribed motion and the piston; for one that a shaft moves
-    stall      force, of either sign, that its source (the supply, where there is one) cannot
-               exceed: there the run ends as `jammed`
-    sign       of the channel `force`: 1 positive where it pushes its ends apart, -1 where it holds
+    points     its ends, on the first and on the second body, as drawn
+    velocity   prescribed rate of the stroke
+    position   prescribed stroke, 0 as drawn; give either this or the velocity
+    stiffness  stiffness between the piston and the second body, or of the whole actuator; rigid
+               without it
+    damping    damping, in the same place
+    supply     spring and damper between the prescribed motion and the piston; for a piston that a
+               shaft can move
+    stall      largest force, of either sign, that its source can give (the supply, if there is
+               one); beyond it the run ends as `jammed`
+    sign       sign of the channel `force`: 1, positive when it pushes its ends apart; -1, positive
+               when it holds them together
     """
 
     type: ClassVar[str] = "actuator"
@@ -260,11 +265,11 @@ def measure(t, scene, e, o):
 CHANNELS = (
     Channel("force", "N", "sign times the thrust along its line"),
     Channel("reaction", "N", "force on the second body, world axes", 3),
-    Channel("stroke", "m", "how much longer it is than drawn"),
+    Channel("stroke", "m", "increase in length from the drawn state"),
     Channel("stroke_rate", "m/s", "its rate"),
     Channel("position", "m", "prescribed stroke; its own once released"),
     Channel("velocity", "m/s", "its rate"),
-    Channel("power", "W", "given to the mechanism"),
+    Channel("power", "W", "power given to the mechanism"),
 )
 WITH_SUPPLY = (
     Channel("piston", "m", "stroke of the piston"),

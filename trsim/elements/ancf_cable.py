@@ -2,8 +2,8 @@
 
     M e'' = F - dU/de - damping,     U = 1/2 int EA eps^2 + EI kappa^2 dx        laws/cable.py
 
-A gradient-deficient element of the absolute nodal coordinate formulation: its nodes have a place r
-and a slope dr/dx, M is constant, and no rotation is needed however far it turns
+A gradient-deficient element of the absolute nodal coordinate formulation: the coordinates of a node
+are its position r and its slope dr/dx.  M is constant, and rotations of any size need no angles
 [BerzeriShabana2000].  In a planar scene the element has 8 coordinates instead of 12.  It has no
 torsion, no shear and no rotary inertia.
 
@@ -46,10 +46,10 @@ SLENDER = 1e-6  # of its inertia across: what a bar without width has about its 
 class AncfCable(Cable):
     """A flexible bar, straight as drawn.
 
-    start             place of its first node
-    end               place of its last node
-    velocity          of its centre at the start
-    angular_velocity  at the start, as one rigid bar
+    start             position of its first node, as drawn
+    end               position of its last node, as drawn
+    velocity          velocity of its centre at the start
+    angular_velocity  angular velocity at the start, as of a rigid bar
     """
 
     type: ClassVar[str] = "ancf_cable"
@@ -162,11 +162,11 @@ def channels(nodes):
         Channel("position", "m", "centre of mass, world axes", 3),
         Channel("velocity", "m/s", "of the centre of mass, world axes", 3),
         Channel("angular_velocity", "rad/s", "of the chord between its ends, world axes", 3),
-        Channel("tip", "m", "place of the last node, world axes", 3),
-        Channel("middle", "m", "place halfway along the bar, world axes", 3),
+        Channel("tip", "m", "position of the last node, world axes", 3),
+        Channel("middle", "m", "position halfway along the bar, world axes", 3),
         Channel("deflection", "m", "largest distance of a node from the chord between the ends"),
-        Channel("strain_energy", "J", "stored in stretching and bending"),
-        Channel("stretching_energy", "J", "of it in stretching"),
+        Channel("strain_energy", "J", "energy stored in stretching and bending"),
+        Channel("stretching_energy", "J", "the part stored in stretching"),
         *(channel for k in range(nodes) for channel in at_node(k)),
     )
 
@@ -174,7 +174,7 @@ def channels(nodes):
 def at_node(k):
     """What is recorded at every node; forces where two elements meet are their mean."""
     return (
-        Channel(f"node{k}.position", "m", "place of the node, world axes", 3),
+        Channel(f"node{k}.position", "m", "position of the node, world axes", 3),
         Channel(f"node{k}.axial_force", "N", "along the bar; tension is positive"),
         Channel(f"node{k}.bending_moment", "N*m", "magnitude"),
     )

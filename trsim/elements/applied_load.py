@@ -3,7 +3,7 @@
     F = f(t, sensors) R_f n          at the point p of the body; n constant in the axes of frame f
 
 f is a number, an expression or an Akima table of t or a sensor.  Frame: world (a fixed direction)
-or a body (a following load).
+or a body (a follower load).
 """
 
 from typing import ClassVar
@@ -31,12 +31,12 @@ from trsim.varying import Function
 
 
 class AppliedLoad(Load):
-    """A force at a point of a body or a torque on it: give one of the two.
+    """A force at a point of a body, or a torque on it; give one of the two.
 
     body       the body it acts on
-    at         point of a force, as drawn; the centre of mass unless given
-    frame      `world`, or a body with which the direction turns
-    direction  of the force, or axis of the torque, as drawn; of any length
+    at         point at which the force acts, as drawn; the centre of mass unless given
+    frame      `world`, or a body: the direction turns with it
+    direction  direction of the force, or axis of the torque, as drawn; of any length
     force      magnitude along the direction
     torque     magnitude about the direction
     """

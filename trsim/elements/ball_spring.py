@@ -1,15 +1,16 @@
-"""Ball spring: a spring and a damper against every turn of a joint that holds a point.
+"""Ball spring: a spring and a damper against any rotation of a joint that holds a point.
 
-    theta = log(A_i^T A_j)              rotation vector of body j against body i; x = |theta|
+    theta = log(A_i^T A_j)              rotation vector of body j relative to body i; x = |theta|
     m     = -A_i (k x + f(x)) theta/x - (c w + d(w)) omega/w         w = |omega|
                                         on body j, -m on body i; omega = omega_j - omega_i
     E     = k x^2 / 2 + integral of f from 0 to x
 
-f and d are functions of a user's, zero at zero, where their moments have no direction.
-A_i, A_j are the triads of the joint.  Those of a spherical joint agree as drawn, so theta is zero
-there; of a constant-velocity joint where its shafts are straight, so |theta| is its bend.  Alike
-about every axis, the moment is the gradient of E: x' = omega . A_i theta/x (rotations.py).  theta
-is that of a turn below pi; beyond, it jumps to the turn from the other side, and the run says so.
+f and d are user-defined functions; they are zero at zero, where their moments have no direction.
+A_i, A_j are the triads of the joint.  Those of a spherical joint coincide as drawn, so theta is
+zero there.  Those of a constant-velocity joint coincide when its shafts are straight, so |theta| is
+its bend.  Because the spring is equal about all axes, the moment is the gradient of E: x' = omega .
+A_i theta/x (rotations.py).  theta describes a rotation below pi.  Beyond, it jumps to the rotation
+from the other side, and the run reports this.
 """
 
 from math import degrees, pi, sqrt
@@ -56,16 +57,18 @@ NEXT_TO_HALF = 0.1  # rad: so near to half a turn it is told
 
 
 class BallSpring(Spec):
-    """A spring and a damper against turns about every axis, alike about all.
+    """A spring and a damper against rotation about any axis, equal about all axes.
 
-    joint      a spherical joint, whose turns are counted from the drawing, or a constant_velocity
-               joint, whose bend is counted from where its shafts are straight
-    stiffness  moment for a turn, about the axis of the turn; of turns below 180 deg
-    damping    moment for an angular velocity of the second body against the first, along that
-    elastic    moment for a turn beside that of `stiffness`: a function of `angle`, by how much the
-               second body is turned about whatever axis, never below 0
-    damper     moment beside that of `damping`: a function of `rate`, the size of the angular
-               velocity, never below 0
+    joint      a spherical joint, whose rotation is measured from the drawing, or a
+               constant_velocity joint, whose bend is measured from straight shafts
+    stiffness  moment per angle of rotation, about the axis of the rotation; for rotations below 180
+               deg
+    damping    moment per angular velocity of the second body relative to the first, along that
+               velocity
+    elastic    elastic moment in addition to that of `stiffness`, a function of `angle`: the angle
+               by which the second body is rotated, about any axis, never below 0
+    damper     damping moment in addition to that of `damping`, a function of `rate`: the magnitude
+               of the angular velocity, never below 0
     """
 
     type: ClassVar[str] = "ball_spring"
@@ -264,7 +267,13 @@ ELEMENT = Element(
     doubts=doubts,
     channels=(
         Channel("moment", "N*m", "on the second body, world axes", 3),
-        Channel(TURN, "rad", "of the second body against the first, world axes", 3, turn=True),
+        Channel(
+            TURN,
+            "rad",
+            "rotation vector of the second body relative to the first, world axes",
+            3,
+            turn=True,
+        ),
     ),
     turning=turning,
     kernels={"coordinate": coordinate, "force": force, "energy": energy, "measure": measure},

@@ -1,11 +1,12 @@
-"""Belt: two pulleys on one carrier whose rims go equally fast.
+"""Belt: two pulleys on one carrier whose rims move at equal speeds.
 
     r_1 w_1 = r_2 w_2          open: both turn the same way
     r_1 w_1 = -r_2 w_2         crossed
 
-w are the rates of the pulleys against their carrier, about one direction.  The belt neither slips
-nor stretches, and it pulls wherever it must: its torques are those of the difference of the forces
-in both strands, and what both have in common loads no joint here.
+w are the angular velocities of the pulleys relative to their carrier, about a common direction.
+The belt neither slips nor stretches, and either strand may pull.  Its torques come from the
+difference between the forces in the strands; the tension that both have in common loads no joint
+here.
 """
 
 from typing import Annotated, ClassVar
@@ -28,12 +29,12 @@ from trsim.frame import across
 
 
 class Belt(Transmission):
-    """A belt, a chain or a closed rope over two pulleys on one carrier, without slip.
+    """A belt, a chain or a closed rope over two pulleys on one carrier, without slip or stretch.
 
-    joints   the hinges of both pulleys, with parallel axes; they share the carrier, which may be
-             the ground
-    radii    of both pulleys, to the middle of the belt
-    crossed  whether its strands cross, so that the pulleys turn opposite ways
+    joints   hinges of both pulleys, with parallel axes; they share the carrier, which may be the
+             ground
+    radii    radii of both pulleys, to the middle of the belt
+    crossed  whether its strands cross, so that the pulleys turn in opposite directions
     """
 
     type: ClassVar[str] = "belt"

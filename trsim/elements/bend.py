@@ -1,7 +1,7 @@
 """The bend of a joint that turns about several axes: the angle between an axis of either body.
 
     tan x = |a_i x a_j| / (a_i . a_j),   0 <= x <= pi,      n = a_i x a_j / |a_i x a_j|
-    x'    = n . omega                                       omega: of body j against body i
+    x'    = n . omega                                       omega: of body j relative to body i
     x''   = -((a_i . a_j)'' + cos x x'^2) / sin x
 
 A torque n on body j bends it further.  Straight, and at half a turn, there is no n: x turns back

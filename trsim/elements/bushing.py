@@ -1,16 +1,16 @@
-"""Bushing: a spring and a damper in each of six directions between two bodies.
+"""Bushing: a spring and a damper between two bodies in each of six directions.
 
     d     = A_i^T (P_j - P_i)            displacement, zero as drawn
     f     = -K d - C d'                  A_i f on body j at P_j, -A_i f on body i at the same place
-    theta = log(A_i^T A_j)               rotation vector of body j against body i, zero as drawn
+    theta = log(A_i^T A_j)               rotation vector of body j relative to body i, zero as drawn
     m     = -H^T K_r theta - C_r omega   A_i m on body j, -A_i m on body i
 
-A_i are the axes of the stiffnesses, fixed in the first body, A_j the same ones in the second;
-omega is the angular velocity of body j against body i in A_i, theta' = H omega.  Both forces act
-along one line, so angular momentum is kept whatever the slide, and f and m are the gradient of
-(d^T K d + theta^T K_r theta)/2.  theta is that of a turn below pi; beyond, it jumps to the turn
-from the other side, and the run says so (doubts.py).  A rail is a bushing without stiffness and
-damping along it.
+A_i are the axes of the stiffnesses, fixed in the first body; A_j are the same axes, fixed in the
+second.  omega is the angular velocity of body j relative to body i in A_i, and theta' = H omega.
+Both forces act along one line, so angular momentum is conserved at any displacement, and f and m
+are the gradient of (d^T K d + theta^T K_r theta)/2.  theta describes a rotation below pi.  Beyond,
+it jumps to the rotation from the other side, and the run reports this (doubts.py).  A rail is a
+bushing with no stiffness and damping along the rail.
 """
 
 from math import degrees, pi
@@ -58,12 +58,12 @@ NEXT_TO_HALF = 0.1  # rad: so near to half a turn it is told
 
 
 class Bushing(Spec):
-    """A linear spring and damper in three directions and about them.
+    """A linear spring and damper along three axes and about them.
 
     bodies                the two bodies; the axes turn with the first one
-    at                    the place, as drawn, where nothing acts
-    x_axis                first direction of the stiffnesses, as drawn; of any length
-    y_axis                second one, made perpendicular to the first; the third is x cross y
+    at                    its position, as drawn; there its force is zero
+    x_axis                x axis of the stiffnesses, as drawn; of any length
+    y_axis                y axis of the stiffnesses, made perpendicular to x; z = x cross y
     stiffness             along x, y, z; 0 lets the bodies slide
     damping               along x, y, z
     rotational_stiffness  about x, y, z
@@ -243,10 +243,15 @@ ELEMENT = Element(
     doubts=doubts,
     springs=springs,
     channels=(
-        Channel("force", "N", "on the second body at its point, world axes", 3),
+        Channel("force", "N", "force on the second body at its point, world axes", 3),
         Channel("moment", "N*m", "on the second body, world axes", 3),
-        Channel("displacement", "m", "of the second body's point, in the axes of the first", 3),
-        Channel(TURN, "rad", "of the second body, in the same axes", 3, turn=True),
+        Channel(
+            "displacement",
+            "m",
+            "displacement of the second body's point, in the axes of the first",
+            3,
+        ),
+        Channel(TURN, "rad", "rotation vector of the second body, in the same axes", 3, turn=True),
     ),
     turning=turning,
     picture="block",

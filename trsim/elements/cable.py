@@ -23,10 +23,10 @@ MOST_ELEMENTS = 1000
 class Section(Spec):
     """The shape of a cross-section: a diameter, or width and height.
 
-    diameter  of a round bar
-    wall      its thickness, where the bar is a tube
-    width     of a rectangle, out of the plane of a planar scene
-    height    of a rectangle, in that plane; the width unless given
+    diameter  diameter of a round bar
+    wall      wall thickness, if the bar is a tube
+    width     width of a rectangle, perpendicular to the plane of a planar scene
+    height    height of a rectangle, in that plane; equal to the width unless given
     """
 
     type: ClassVar[str] = "section"
@@ -63,19 +63,20 @@ class Section(Spec):
 class Cable(Spec):
     """A straight bar that stretches and bends; it does not resist torsion.
 
-    elements        how many of equal length it is divided into; joints and loads stand where they
-                    meet, or at the ends
+    elements        number of elements of equal length; joints and loads must be at nodes, that is
+                    where elements meet, or at the ends
     section         shape of its cross-section
-    area            of the cross-section, where no shape is given
-    second_moment   of the area, where no shape is given
-    youngs_modulus  of its material
-    density         of its material
-    mass            of the whole bar, instead of a density
+    area            area of the cross-section, if no shape is given
+    second_moment   second moment of area, if no shape is given
+    youngs_modulus  Young's modulus of its material
+    density         density of its material
+    mass            mass of the whole bar, instead of a density
     strain          green: (r'.r' - 1)/2; engineering: |r'| - 1
     curvature       exact: |r' x r''|/|r'|^3; gerstmayr: |r' x r''|/|r'|^2; paper: |r''|
-    stretching      assumed: a parabola with the strain at both nodes and the mean of an element;
-                    full: the strain everywhere, which makes slender bars too stiff
-    damping         beta of a material of Kelvin and Voigt: stress = E (strain + beta strain rate)
+    stretching      assumed: the strain is a parabola through its values at both nodes, with the
+                    mean of the element; full: the strain at every point, which makes slender bars
+                    too stiff
+    damping         beta of a Kelvin-Voigt material: stress = E (strain + beta strain rate)
     """
 
     type: ClassVar[str] = "cable"

@@ -4,18 +4,19 @@
     face     Phi = m . (q - c) = 0          c where c' . m = 0
 
 m is the normal of the face, fixed in body j, from the cam to the follower, and q a point of the
-face.  Of a face, with w the velocity of body j against body i where they touch, and omega that of
-their turns,
+face.  For a face, with w the velocity of body j relative to body i where they touch, and omega
+their relative angular velocity,
 
     u'    = -c' . (omega x m) / (c'' . m)
     J     : the force m on body j where they touch, -m on body i there
     Phi'' = J V' + (omega_j x m) . w + m . (omega_j x a') - m . (omega_i x rho'),
             a' = -w + omega_j x a + c' u',  rho' = omega_i x rho + c' u'
 
-with rho and a from the centres of body i and of body j to the touch.  The touch moves along c',
-across m, so u' is in none of J.  Contact holds both ways: normal_force is positive where the
-follower is pressed, and negative where it would lift off, which a run says at its end.  There is no
-friction; a roller turns freely, and reaction is that on its centre, or on q.
+with rho and a from the centres of body i and of body j to the point of contact.  This point moves
+along c', perpendicular to m, so u' does not appear in J.  The follower cannot lift off:
+normal_force is positive while the follower is pressed on, and negative where it would lift off,
+which a run reports at its end.  There is no friction.  A roller turns freely; reaction acts at its
+centre, or at q.
 """
 
 from math import sqrt
@@ -73,12 +74,12 @@ LIFTS = 1e-6  # of the largest force: what is none
 
 
 class Cam(OnCurve):
-    """A roller or a flat face of the second body on a curve of the first, held both ways.
+    """A roller or a flat face of the second body that stays on a curve of the first.
 
-    curve   of the cam, with which it moves
+    curve   the profile of the cam, which moves with the first body
     at      centre of the roller, or a point of the flat face, as drawn
-    radius  of the roller; it is on the side of the curve on which its centre is drawn
-    face    of a flat face instead: its normal, from the cam to the follower, as drawn
+    radius  radius of the roller, which runs on that side of the curve on which its centre is drawn
+    face    normal of a flat face, instead of a roller: from the cam to the follower, as drawn
     """
 
     type: ClassVar[str] = "cam"
@@ -321,10 +322,18 @@ ELEMENT = on_curve(
     pack=pack,
     rows=(JointRow("contact", "n", fill=contact),),
     channels=(
-        Channel("normal_force", "N", "between cam and follower, positive where they press"),
-        Channel("pull", "N", "by which the follower is held where it would lift off", least=0.0),
-        Channel("curvature", "1/m", "of the curve where they touch, positive to its left"),
-        Channel("place", "m", "where they touch, world axes", 3),
+        Channel(
+            "normal_force",
+            "N",
+            "normal force between cam and follower, positive while they are pressed together",
+        ),
+        Channel("pull", "N", "force that holds the follower where it would lift off", least=0.0),
+        Channel(
+            "curvature",
+            "1/m",
+            "curvature of the curve at the point of contact, positive to its left",
+        ),
+        Channel("place", "m", "point of contact, world axes", 3),
         LENGTH,
     ),
     loads={"normal_force": "contact force"},

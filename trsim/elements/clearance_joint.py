@@ -5,13 +5,14 @@
     F_n = f(d, d')               normal force on the journal, along -e / |e|     laws/contact.py
     F_t = -f_t(F_n, v_t)         friction on the journal, along t = a x n        laws/friction.py
 
-a is the axis, fixed in the bearing.  Both forces act at the contact point, R_B + d from the
-bearing's centre, on journal and bearing alike: friction turns both bodies and the pair adds no
-moment.  Rows kept: axial (a . D = 0) and both tilts; the mobility grows by two.    [Flores2008]
+a is the axis, fixed in the bearing.  Both forces act at the contact point, at R_B + d from the
+centre of the bearing, on the journal and, in the opposite direction, on the bearing.  So friction
+turns both bodies, and the pair adds no moment.  Three rows remain: axial (a . D = 0) and both
+tilts; the mobility grows by two.    [Flores2008]
 
-In flight the force is zero whatever the gap; the solver switches the phase at the located touch
-and latches the approach speed d'_0 there, never below `slowest_impact`.  Eccentricity is reported
-in the axes of the bearing's body.
+In free flight the force is zero at any gap.  The solver locates the touch, switches to contact
+there and stores the approach speed d'_0, never below `slowest_impact`.  Eccentricity is reported in
+the axes of the body of the bearing.
 """
 
 from math import sqrt
@@ -70,8 +71,8 @@ from trsim.laws.friction import (
 class ClearanceJoint(Revolute):
     """A hinge with play: a revolute with the key `clearance`.
 
-    clearance  radial; with 0 the joint is an ideal revolute
-    contact    entry of contact_laws; may be left out where there is only one
+    clearance  radial clearance; with 0 the joint is an ideal revolute
+    contact    name of an entry of contact_laws; may be omitted if there is only one
     """
 
     clearance: Annotated[float, Ge(0), Unit("m")]
@@ -283,17 +284,19 @@ ELEMENT = Element(
     coordinates=("angle",),
     channels=(
         Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
-        Channel("friction_force", "N", "on the journal, along axis x normal"),
+        Channel("friction_force", "N", "friction on the journal, along axis x normal"),
         Channel("contact_force", "N", "resultant of normal force and friction", least=0.0),
-        Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
-        Channel("penetration_rate", "m/s", "positive while approaching"),
+        Channel("penetration", "m", "penetration, positive in contact; in flight, minus the gap"),
+        Channel("penetration_rate", "m/s", "rate of the penetration, positive while approaching"),
         Channel(
-            "sliding_speed", "m/s", "journal against bearing at the contact point; 0 in flight"
+            "sliding_speed",
+            "m/s",
+            "speed of the journal relative to the bearing at the contact point; 0 in flight",
         ),
-        Channel("eccentricity_x", "m", "journal centre in the bearing, axes of its body"),
-        Channel("eccentricity_y", "m", "journal centre in the bearing, axes of its body"),
-        Channel("eccentricity_x_rate", "m/s", "its rate in the axes of the bearing's body"),
-        Channel("eccentricity_y_rate", "m/s", "its rate in the axes of the bearing's body"),
+        Channel("eccentricity_x", "m", "journal centre relative to bearing centre, bearing axes"),
+        Channel("eccentricity_y", "m", "journal centre relative to bearing centre, bearing axes"),
+        Channel("eccentricity_x_rate", "m/s", "rate of the eccentricity, bearing axes"),
+        Channel("eccentricity_y_rate", "m/s", "rate of the eccentricity, bearing axes"),
         Channel("force", "N", "contact force on the journal's body, world axes", 3),
     ),
     meets=True,

@@ -97,12 +97,13 @@ class Components(Spec):
     """Six components of a load as functions of one variable.
 
     table          rows [x, Fx, Fy, Fz, Mx, My, Mz], x rising, or the name of a CSV file
-    columns        which columns of the file these are, seven titles or numbers from 1; unless given
-                   those with the titles Fx to Mz, or all of a file of seven columns without them
+    columns        columns of the file, as seven titles or numbers from 1. Unless given: those with
+                   the titles Fx to Mz, or all columns of a file that has seven and no such titles
     of             what x is: t, a sensor, or the rate of one
-    interpolation  between rows: smooth by neighbours, straight, or a smooth spline
-    outside        before the first and behind the last row: the value there, the curve goes on, or
-                   the run ends
+    interpolation  between rows: akima, a smooth local curve; linear; or spline, a smooth cubic
+                   spline
+    outside        before the first and after the last row: hold their values, extend the curve, or
+                   end the run (error)
     """
 
     type: ClassVar[str] = "components"

@@ -1,18 +1,18 @@
-"""Constant-velocity joint: two points coincide, and bending the shafts twists neither.
+"""Constant-velocity joint: two points coincide, and bending the joint twists neither shaft.
 
     Phi_1..3 = r_j + p_j - r_i - p_i = 0
     Phi_4    = (w_i . u_j - u_i . w_j)/2 = 0
 
 a_i and a_j point along the shafts, from the first through the joint to the second.  The triad u, w,
-a of body j is that of body i bent from a_i to a_j by the shortest turn, whose quaternion has no
-part along a_i; Phi_4 is twice the product of that part and the scalar one [Nikravesh1988].  Along
-any motion
+a of body j is that of body i after the shortest rotation from a_i to a_j.  The quaternion of this
+rotation has no component along a_i; Phi_4 is twice the product of that component and the scalar one
+[Nikravesh1988].  In any motion
 
     (omega_j - omega_i) . (a_i + a_j)/2 = 0
 
-so two shafts in bearings that stand turn equally fast at every bend below half a turn, where
-nothing tells any more how one is turned against the other: both factors of Phi_4 vanish, and the
-motion could go on with the wrong one.  In space a run fails 0.02 rad in front of it.  reaction
+so two shafts in fixed bearings turn at equal speeds at every bend below 180 degrees.  At 180
+degrees the relative rotation of the shafts is undetermined: both factors of Phi_4 vanish, and the
+motion could continue with the wrong one.  In space a run fails 0.02 rad before that bend.  reaction
 acts on body j at the point, reaction_moment in the direction of a_i + a_j.
 """
 
@@ -46,10 +46,11 @@ TWIST = FIRST_ROW + 3  # column of con with the row of the twist
 
 
 class ConstantVelocity(Joint):
-    """A joint between two shafts that turn equally fast however they are bent.
+    """A joint between two shafts that turn at equal speeds at any bend.
 
-    axis         of the first shaft, towards the second one, as drawn; of any length
-    second_axis  of the second shaft, away from the first one, as drawn; straight on unless given
+    axis         direction of the first shaft, towards the second one, as drawn; of any length
+    second_axis  direction of the second shaft, away from the first one, as drawn; straight on
+                 unless given
     """
 
     type: ClassVar[str] = "constant_velocity"

@@ -1,8 +1,8 @@
-"""Coupler: a linear relation between coordinates of joints, wherever these are.
+"""Coupler: a linear relation between coordinates of any joints.
 
     sum_k c_k (x_k - x_k,0) = 0        x_k angles (rad) or strokes (m), x_k,0 as drawn
 
-Of angles alone the coefficients are numbers, of strokes alone too; where both are related those of
+Between angles alone, or strokes alone, the coefficients are plain numbers.  Between both, those of
 the angles are in m/rad, or those of the strokes in rad/m.
 """
 
@@ -18,11 +18,12 @@ from trsim.units import fits
 
 
 class Coupler(Transmission):
-    """A linear relation of joint coordinates: the sum of coefficients times coordinates is kept.
+    """A linear relation of joint coordinates: the sum of coefficients times coordinates is
+    constant.
 
-    joints        two or more of them
-    coefficients  one for each; numbers, or m/rad of an angle beside strokes, rad/m of a stroke
-                  beside angles
+    joints        two or more joints
+    coefficients  one for each joint: numbers; or, if angles and strokes are related, m/rad for the
+                  angles or rad/m for the strokes
     """
 
     type: ClassVar[str] = "coupler"

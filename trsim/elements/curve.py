@@ -123,15 +123,15 @@ class Curve(Placed):
     at        origin of its coordinates, as drawn; a place, or the name of a point
     x_axis    direction of its x axis, as drawn
     y_axis    direction of its y axis, made perpendicular to x
-    points    places [x, y] it goes through, in its own coordinates
-    table     the same in a CSV file of two columns
-    columns   titles of x and y in a file of more columns, such as a recorded path of a point
-    x         expression of s, instead of points
-    y         the same of y
-    range     first and last s
-    closed    whether it goes on from the last point to the first
-    tangents  directions at both ends of an open curve through points; without them it is straight
-              there (its curvature is zero)
+    points    points [x, y] it passes through, in its own coordinates
+    table     the same, from a CSV file of two columns
+    columns   titles of x and y in a file with more columns, such as the recorded path of a point
+    x         x as an expression of s, instead of points
+    y         y as an expression of s
+    range     first and last value of s
+    closed    whether it continues from the last point to the first
+    tangents  directions at both ends of an open curve through points; without them its curvature is
+              zero at the ends
     """
 
     type: ClassVar[str] = "curve"

@@ -3,8 +3,8 @@
     Phi_1, 2 = u_i . d = 0,  w_i . d = 0          d from the point on i to the point on j
     Phi_3, 4 = u_i . a_j = 0,  w_i . a_j = 0      [Nikravesh1988]
 
-The angle is that of body j's axes minus body i's about a, unwrapped; the stroke is a_i . d, zero as
-drawn.  reaction acts on body j at its point.
+The angle is that of the axes of body j minus that of body i, about a, unwrapped; the stroke is
+a_i . d, zero as drawn.  reaction acts on body j at its point.
 """
 
 from typing import ClassVar
@@ -17,7 +17,8 @@ from trsim.fields import vector
 class Cylindrical(Joint):
     """A sleeve of the second body on an axis of the first: it slides and turns.
 
-    axis  along which the stroke grows, and the angle about it, as drawn; of any length
+    axis  direction, as drawn; of any length. The stroke is positive along it, and the angle about
+          it
     """
 
     type: ClassVar[str] = "cylindrical"

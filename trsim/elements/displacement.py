@@ -2,9 +2,9 @@
 
     s = sign a_i . (P_j - P_i) + at_start
 
-P_i and P_j are one point as drawn, fixed in either body, a_i the axis fixed in the first one.
-Along the axis of a prismatic joint this is its stroke; it needs no joint, so it tells for example
-the stroke of a body on compliant rails.
+P_i and P_j are the same point as drawn, fixed in the first and in the second body; the axis a_i is
+fixed in the first one.  Along the axis of a prismatic joint this is its stroke.  No joint is
+needed, so the sensor also measures, for example, the stroke of a body on compliant rails.
 """
 
 from typing import Annotated, ClassVar, Literal
@@ -23,8 +23,8 @@ class Displacement(Spec):
     bodies    the first one has the axis
     at        the point, as drawn
     axis      direction in which it grows, as drawn; of any length
-    sign      -1 counts the other way round
-    at_start  what it shows as drawn
+    sign      -1 reverses the sign
+    at_start  value of the sensor as drawn
     """
 
     type: ClassVar[str] = "displacement"

@@ -2,9 +2,9 @@
 
     s = |d|,    s' = n . d',    s'' = n . d'' + (|d'|^2 - s'^2) / s        n = d / |d|
 
-d goes from the point on the first body to the point on the second.  Where the points meet d has no
-direction, and the sensor turns back: its rate and its acceleration are then those just after.  So
-they are where rounding alone keeps the points apart.
+d goes from the point on the first body to the point on the second.  When the points meet, d has no
+direction and the sensor turns back; its rate and acceleration are then those just after.  The same
+holds if only rounding keeps the points apart.
 """
 
 from math import sqrt
@@ -29,10 +29,10 @@ ROUNDING = 1e-15  # of places: points that are nearer to each other meet
 
 
 class Distance(Spec):
-    """The distance of two points.
+    """The distance between two points.
 
-    bodies  the two, or one and the ground
-    points  on the first and on the second body, as drawn
+    bodies  the two bodies, or one body and the ground
+    points  its ends, on the first and on the second body, as drawn
     """
 
     type: ClassVar[str] = "distance"
@@ -96,7 +96,7 @@ ELEMENT = Element(
     pack=pack,
     coordinates=("stroke",),
     channels=(
-        Channel("", "m", "distance of the points", least=0.0),
+        Channel("", "m", "distance between the points", least=0.0),
         Channel("rate", "m/s", "its rate"),
         Channel("acceleration", "m/s^2", "its acceleration"),
     ),

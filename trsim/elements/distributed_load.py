@@ -1,6 +1,6 @@
 """Distributed load: a force per undeformed length along a whole flexible bar.
 
-    F_i = int S_i(x) dx  f(t, sensors) R_f n        S_i: shapes of an element, laws/cable_section.py
+    F_i = int S_i(x) dx  f(t, sensors) R_f n        S_i: shape functions, laws/cable_section.py
 
 f is a number, an expression or an Akima table of t or a sensor.  Frame: world (a fixed direction)
 or a body (a direction that turns with it).
@@ -33,8 +33,8 @@ class DistributedLoad(Load):
     """A uniform force per length along a flexible bar.
 
     body              the flexible bar
-    frame             `world`, or a body with which the direction turns
-    direction         of the force, as drawn; of any length
+    frame             `world`, or a body: the direction turns with it
+    direction         direction of the force, as drawn; of any length
     force_per_length  magnitude along the direction
     """
 
@@ -134,7 +134,7 @@ ELEMENT = Element(
     acts_on=acts_on,
     channels=(
         Channel("magnitude", "N/m", "force per length along its direction"),
-        Channel("load", "N", "of the whole bar, world axes", 3),
+        Channel("load", "N", "total force on the bar, world axes", 3),
     ),
     turning=turning,
     loads={"magnitude": "load"},

@@ -3,9 +3,9 @@
     rigid        Phi = x - f(t) = 0,   F = -lambda
     compliant    F = -k (x - f) - c (x' - f'),   c = 2 zeta sqrt(k m)
 
-x is the angle or stroke of the joint, f the prescribed position or, for a prescribed velocity, its
-integral from the starting value of x (a state of the element).  F acts on body j along the axis of
-the joint; the channel `force` is sign F.
+x is the angle or stroke of the joint.  f is the prescribed position or, if a velocity is
+prescribed, its integral from the initial value of x (a state of the element).  F acts on body j
+along the axis of the joint; the channel `force` is sign F.
 """
 
 from typing import Annotated, ClassVar, Literal
@@ -46,13 +46,13 @@ from trsim.varying import Function
 class Compliance(Spec):
     """A spring and a damper in parallel, in series with the prescribed motion.
 
-    stiffness      of the spring
-    damping        of the damper; 0 unless this or damping_ratio is given
+    stiffness      stiffness of the spring
+    damping        damping of the damper; 0 unless this or damping_ratio is given
     damping_ratio  zeta of c = 2 zeta sqrt(k m)
-    mass           m of it; unless given that of the driven body alone (the second one of the
-                   joint, or the first where that is the ground; what hangs on it does not count):
-                   its mass, or on a hinge its inertia about the hinge's axis, I + m d^2 with the
-                   distance d of its centre of mass from the axis
+    mass           m in this formula. Unless given, it is the mass of the driven body, or, on a
+                   hinge, its moment of inertia about the axis, I + m d^2, with d the distance of
+                   its centre of mass from the axis. The driven body is the second one of the joint,
+                   or the first one if the second is the ground; bodies attached to it do not count
     """
 
     stiffness: Annotated[float, Gt(0), Unit("N/m", "N*m/rad")]
@@ -62,13 +62,13 @@ class Compliance(Spec):
 
 
 class Drive(Spec):
-    """A prescribed position or velocity of a joint coordinate; depends on t only.
+    """A prescribed position or velocity of a joint coordinate, as a function of t only.
 
-    joint       revolute or prismatic joint whose coordinate is driven
-    position    the coordinate
-    velocity    its rate; starts from the place of the joint
-    sign        of the channel `force`; the motion does not depend on it
-    compliance  what lies between the prescribed motion and the joint; rigid without it
+    joint       joint whose coordinate is driven: revolute or prismatic
+    position    prescribed coordinate
+    velocity    prescribed rate; the coordinate starts where the joint is
+    sign        sign of the channel `force`; the motion does not depend on it
+    compliance  spring and damper between the prescribed motion and the joint; rigid without it
     """
 
     type: ClassVar[str] = "drive"
@@ -210,7 +210,7 @@ ELEMENT = Element(
             "position", "coordinate", "prescribed coordinate of the joint; its own once released"
         ),
         Channel("velocity", "coordinate/s", "its rate"),
-        Channel("power", "W", "given to the mechanism"),
+        Channel("power", "W", "power given to the mechanism"),
     ),
     loads={"force": "force"},
     kernels={"constraint": constraint, "force": force, "energy": energy, "measure": measure},

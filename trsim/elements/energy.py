@@ -1,10 +1,10 @@
-"""Energy sensor: kinetic, stored, or both together, of the whole mechanism.
+"""Energy sensor: kinetic or stored energy of the whole mechanism, or their sum.
 
     kinetic    sum of m v^2 / 2 + omega . I omega / 2
-    stored     in springs, contacts and gravity, from zero as `energy.stored` is     contract.py
+    stored     in springs, contacts and gravity; its zero is that of `energy.stored`     contract.py
 
-The same numbers stand in the energy book, `energy.kinetic` and `energy.stored.springs` and so on;
-as a sensor they have a name of their own, for formulas.
+The energy balance has the same numbers (`energy.kinetic`, `energy.stored.springs` and so on); as a
+sensor they have a name that formulas can use.
 """
 
 from typing import ClassVar, Literal

@@ -15,7 +15,7 @@ from trsim.elements.rows import POINT, TILTS, TURN, Axes
 
 
 class Fixed(Joint):
-    """A weld between two bodies, cut at the point `at`."""
+    """A weld between two bodies; its reaction is that in a cut through the point `at`."""
 
     type: ClassVar[str] = "fixed"
 

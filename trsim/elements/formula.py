@@ -1,12 +1,12 @@
 """Formula: an expression of other sensors, and of t.
 
-    s = f(t, sensors)          s' = df/dt by the rates of the sensors, where all of them have one
+    s = f(t, sensors)          s' = df/dt from the rates of the sensors, if all of them have one
 
-The rate of a sensor may stand in it, `x*x.rate`; it has no rate of its own then.
+The expression may use rates of sensors, `x*x.rate`; then the formula has no rate of its own.
 
-It is evaluated as written; where it has no finite number, as where it divides by zero, the run
-ends.  In a load the expression stands for the formula: its corners are found there like those of
-any other load.
+It is evaluated as written.  If the value is not a finite number, for example after a division by
+zero, the run ends.  A load may use the formula by its name; its corners are then located like those
+of any other load.
 """
 
 from typing import ClassVar
@@ -22,10 +22,10 @@ from trsim.varying import Function
 
 
 class Formula(Spec):
-    """A sum, a ratio, or any other expression of sensors that stand before it in the file.
+    """A sum, a ratio, or any other expression of sensors that are defined before it in the file.
 
     value  the expression, in SI units
-    unit   of what it shows, for files and figures: an SI unit
+    unit   SI unit of the value, for files and figures
     """
 
     type: ClassVar[str] = "formula"

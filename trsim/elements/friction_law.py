@@ -30,13 +30,14 @@ class Friction(Spec):
 
     law                 none; coulomb: constant; modified_coulomb: none below v0, full from v1 on;
                         sticking: bristles that hold at rest
-    coefficient         of sliding friction
-    v0                  sliding speed below which there is none
-    v1                  sliding speed from which it is full
-    static_coefficient  of sticking; the coefficient unless given
-    stribeck_speed      sliding speed at which sticking turns into sliding
-    bristle_stiffness   of the bristles, per unit of normal force
-    bristle_damping     of the bristles, per unit of normal force
+    coefficient         coefficient of sliding friction
+    v0                  sliding speed below which there is no friction
+    v1                  sliding speed from which friction is full
+    static_coefficient  coefficient of static friction, for sticking; equal to `coefficient` unless
+                        given
+    stribeck_speed      sliding speed at which sticking changes to sliding
+    bristle_stiffness   stiffness of the bristles, per unit of normal force
+    bristle_damping     damping of the bristles, per unit of normal force
     """
 
     type: ClassVar[str] = "friction"

@@ -1,13 +1,14 @@
-"""Gear: two wheels on one carrier, whose angles keep a ratio.
+"""Gear: two wheels on one carrier, with a constant ratio of their angles.
 
     ratio         phi_1 - phi_1,0 = ratio (phi_2 - phi_2,0)      of the angles of the joints
     teeth, radii  z_1 w_1 = e z_2 w_2                            e = -1 or 1, from the drawing
 
-w_k is how fast wheel k turns against the carrier, about its axis.  It is the rate of the angle of
-joint k where the carrier is the first body of the joint, else minus that.  Wheels on parallel axes
-turn in opposite senses (e = -1 of axes in one direction), one inside the other (`internal`) in the
-same.  Of bevel gears, whose axes meet, that holds for the directions from there to the wheels.  The
-carrier may move: a planet wheel is a gear whose carrier turns [Willis1841].
+w_k is the angular velocity of wheel k relative to the carrier, about its axis.  It is the rate of
+the angle of joint k if the carrier is the first body of the joint, otherwise minus that rate.
+Wheels on parallel axes turn in opposite senses (e = -1 if both axes point in the same direction);
+with one inside the other (`internal`) they turn in the same sense.  For bevel gears, whose axes
+intersect, take the directions from the intersection to the wheels instead.  The carrier may move: a
+planet wheel is a gear with a rotating carrier [Willis1841].
 """
 
 from typing import Annotated, ClassVar
@@ -40,13 +41,14 @@ Positive = Annotated[float, Gt(0)]
 class Gear(Transmission):
     """Two wheels in mesh, each on a hinge of one carrier, which may move.
 
-    joints    the hinges of the first and the second wheel; they share the carrier, which may also
-              be the ground, as may be a wheel
-    teeth     numbers of teeth; which way the second wheel turns follows from the drawing
-    radii     of the pitch circles, instead of numbers of teeth
-    ratio     angle of the first joint over that of the second one, as their sensors show them, with
-              its sign: instead of both, and for axes that neither are parallel nor meet
-    internal  one wheel inside the other
+    joints    the hinges of the first and the second wheel. They share the carrier; the carrier or a
+              wheel may be the ground
+    teeth     numbers of teeth; the drawing decides which way the second wheel turns
+    radii     radii of the pitch circles, instead of numbers of teeth
+    ratio     angle of the first joint divided by that of the second one, with the sign that their
+              sensors show. Instead of teeth and radii, and for axes that are neither parallel nor
+              intersect
+    internal  whether one wheel is inside the other
     """
 
     type: ClassVar[str] = "gear"

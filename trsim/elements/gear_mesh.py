@@ -1,15 +1,16 @@
-"""Gear mesh: two wheels whose teeth give way, and have play.
+"""Gear mesh: two wheels with elastic teeth and backlash.
 
-    x = c_1 (phi_1 - phi_1,0) + c_2 (phi_2 - phi_2,0)        along the pitch line; c as of gear.py
+    x = c_1 (phi_1 - phi_1,0) + c_2 (phi_2 - phi_2,0)        along the pitch line; c as in gear.py
     T = max(0, k d + c s(d/ramp) x')       d = x - b/2 > 0        one flank
         min(0, k d + c s(-d/ramp) x')      d = x + b/2 < 0        the other one
         0                                  between                the teeth are free
-    -c_k T     torque on the second body of joint k about its axis, and against it on the first
+    -c_k T     torque on the second body of joint k about its axis; the opposite on the first
 
-x is how far the first wheel is ahead, b the backlash, and as drawn the teeth stand in its middle.
-Teeth never pull where there is play; without any (b = 0) T = k x + c x' on both flanks.  s is the
-smoothstep: the damping fades in, so that there is no jump at a touch.  Steps end where teeth meet
-and part; where damping alone keeps them from pulling is left to the error estimate.
+x is how far the first wheel is ahead, and b the backlash; as drawn, the teeth are in the middle of
+it.  With backlash the teeth never pull; without it (b = 0), T = k x + c x' on both flanks.  s is
+the smoothstep: the damping fades in, so that the force does not jump at a touch.  Steps end where
+teeth touch and separate.  The instants at which T reaches zero while the teeth still touch are not
+located; the error estimate covers them.
 """
 
 from typing import Annotated, ClassVar
@@ -41,16 +42,16 @@ Length = Annotated[float, Gt(0), Unit("m")]
 
 
 class GearMesh(Spec):
-    """Two wheels in mesh, each on a hinge of one carrier, with elastic teeth and play.
+    """Two wheels in mesh, each on a hinge of one carrier, with elastic teeth and backlash.
 
-    joints     the hinges of the first and the second wheel; they share the carrier, which may also
-               be the ground
-    radii      of the pitch circles
-    internal   one wheel inside the other
-    stiffness  of the teeth along the pitch line
-    damping    the same, while they touch
+    joints     the hinges of the first and the second wheel; they share the carrier, which may be
+               the ground
+    radii      radii of the pitch circles
+    internal   whether one wheel is inside the other
+    stiffness  stiffness of the teeth along the pitch line
+    damping    damping of the teeth along the pitch line, while they touch
     backlash   play along the pitch line, from one flank to the other
-    ramp       penetration over which the damping fades in, where there is play
+    ramp       penetration over which the damping fades in, if there is play
     """
 
     type: ClassVar[str] = "gear_mesh"
@@ -188,10 +189,16 @@ ELEMENT = Element(
     acts_at=acts_at,
     reach=reach,
     channels=(
-        Channel("force", "N", "of the teeth along the pitch line, positive on the first flank"),
-        Channel("play", "m", "how far the first wheel is ahead, from the middle of the backlash"),
-        Channel("torque_1", "N*m", "on the second body of joint 1, about its axis"),
-        Channel("torque_2", "N*m", "on the second body of joint 2, about its axis"),
+        Channel(
+            "force", "N", "force of the teeth along the pitch line, positive on the first flank"
+        ),
+        Channel(
+            "play",
+            "m",
+            "how far the first wheel is ahead, measured from the middle of the backlash",
+        ),
+        Channel("torque_1", "N*m", "torque on the second body of joint 1, about its axis"),
+        Channel("torque_2", "N*m", "torque on the second body of joint 2, about its axis"),
     ),
     loads={"force": "force"},
     picture="wheels",

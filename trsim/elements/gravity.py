@@ -10,7 +10,7 @@ from trsim.kernels.columns import V3, i8
 
 
 class Gravity(Spec):
-    """Made from the key `gravity` of a scenario, one instance per body with mass.
+    """Created from the key `gravity` of a scenario, one instance for each body with mass.
 
     body   the body
     field  acceleration of a free fall

@@ -2,7 +2,7 @@
 
     Phi_1, 2 = u_i . d = 0,  w_i . d = 0          d from the point on i to the point on j
 
-The stroke is a_i . d, zero as drawn; all turns are free.  reaction acts on body j at its point.
+The stroke is a_i . d, zero as drawn; all rotations are free.  reaction acts on body j at its point.
 """
 
 from typing import ClassVar

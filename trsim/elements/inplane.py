@@ -2,9 +2,9 @@
 
     Phi = a_i . d = 0          d from the point on i to the point on j      [Nikravesh1988]
 
-a is the normal of the plane, u its x axis, w = a x u its y axis; all turn with body i.  x = u_i . d
-and y = w_i . d are zero as drawn.  reaction acts on body j at its point, along a; positive where it
-pushes the way the axis points.
+a is the normal of the plane, u its x axis and w = a x u its y axis; all three turn with body i.
+x = u_i . d and y = w_i . d are zero as drawn.  reaction acts on body j at its point, along a;
+positive where it pushes the way the axis points.
 """
 
 from typing import ClassVar
@@ -19,7 +19,8 @@ class Inplane(Joint):
 
     axis    normal of the plane, as drawn; of any length
     x_axis  direction in which x grows, as drawn, made perpendicular to `axis`; y grows along axis
-            cross x.  Unless given the world axis behind the one next to `axis`: of z it is x
+            cross x. Unless given, it follows from the world axis nearest to `axis`: x, y, z give y,
+            z, x
     """
 
     type: ClassVar[str] = "inplane"

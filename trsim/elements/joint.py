@@ -15,8 +15,8 @@ Z = (0.0, 0.0, 1.0)
 class Joint(Spec):
     """Two bodies and the place they meet.
 
-    bodies  the first one has the bearing; reactions are those on the second one
-    at      the place, as drawn
+    bodies  the first one has the bearing; reactions are those acting on the second one
+    at      position of the joint, as drawn
     """
 
     bodies: tuple[str, str]

@@ -1,10 +1,10 @@
-"""Friction in a joint: its own reaction presses the surfaces together, and they rub as it moves.
+"""Friction in a joint: its reaction presses the surfaces together, and they rub as it moves.
 
     s' = g x'                       sliding speed, x the coordinate of the joint
     F  = (N + C / (mu g)) f(s')     along the surface; f: a law of laws/friction.py, of a load of 1
     Q  = g F                        on body j along the coordinate, -Q on body i
 
-C is a constant friction, of a seal or a preload, at full sliding.  The load N follows from the
+C is a constant friction from a seal or a preload, at full sliding.  The load N follows from the
 reaction of the joint's own rows, a force R and a moment M on body j at the joint, with a the axis:
 
     slide     N = |R_1| + |R_2| + 2 |M . a| / width               g = 1
@@ -15,19 +15,20 @@ reaction of the joint's own rows, a force R and a moment M on body j at the join
 
     R_1,2 = (R - a a . R)/2 +- (M x a) / length      what its two ends carry across the axis
 
-Without `length` its moment presses nothing, N counts |R - a a . R|.  A thread rubs along its helix:
-by a force F sin l along the axis and a torque radius F cos l about it.  What drives, locks and
-stops do along the coordinate is no part of the reaction.
+Without `length` the moment adds no load, and N contains |R - a a . R| instead.  A thread rubs along
+its helix, with a force F sin l along the axis and a torque radius F cos l about it.  Forces of
+drives, locks and stops along the coordinate are not part of the reaction.
 
-Of a joint that slides along several coordinates at once, as a shaft that turns in a sleeve or a
-block on a table, s' and F are vectors with a part for each, F against s', and f that of |s'|.  A
-sleeve is pressed like a hinge without collar, a plane by N = |R . a| along its normal.  A ball
-turns about three axes of body i: its friction is a moment radius |F| against its angular velocity
-omega, s' = radius omega, as of a ball that its socket holds all around.
+If a joint slides along several coordinates at once, like a shaft that turns in a sleeve or a block
+on a table, s' and F are vectors with one component for each coordinate; F opposes s', and f is
+taken at |s'|.  A sleeve is loaded like a hinge without a collar, a plane by N = |R . a| along its
+normal.  A ball turns about three axes of body i; its friction is a moment radius |F| that opposes
+its angular velocity omega, with s' = radius omega, as for a ball that is held all around by its
+socket.
 
-Reaction and friction depend on each other.  They are solved for together, to rounding, in every
-evaluation of the equations of motion (assemble/rubbing.py).  Where large friction has no solution,
-or several [Painleve1895], the run ends with the status `painleve`.
+Reaction and friction depend on each other.  Every evaluation of the equations of motion solves for
+both together, to rounding (assemble/rubbing.py).  If large friction has no solution, or several
+[Painleve1895], the run ends with the status `painleve`.
 """
 
 from math import sqrt
@@ -60,21 +61,22 @@ Length = Annotated[float, Gt(0), Unit("m")]
 
 
 class JointFriction(Spec):
-    """Friction in a joint, made by the joint's own reaction.
+    """Friction in a joint, caused by the reaction of the joint.
 
-    joint          joint that rubs; of one with several coordinates all of them together, as they
-                   slide, or the one that is named
-    friction       law modified_coulomb or sticking, with its numbers; a coefficient of 0 leaves
-                   `constant` alone
-    radius         of the journal of a hinge, at which it rubs; of a thread its mean radius; of a
-                   ball its radius
+    joint          joint in which friction acts. If it has several coordinates, friction acts on all
+                   of them together, or on the one that is named
+    friction       law modified_coulomb or sticking, with its parameters; with a coefficient of 0
+                   only `constant` acts
+    radius         radius at which the surfaces rub: of the journal of a hinge, of a ball, or the
+                   mean radius of a thread
     thrust_radius  mean radius of the collar that carries the force along the axis of a hinge;
-                   without it that force makes no friction
-    length         between the two ends that carry moments across the axis; without it these make
-                   no friction
-    width          between the two flanks of a slide that carry the moment about its axis; the same
-    constant       friction that is always there while it slides, of a seal or a preload; of
-                   what turns a torque
+                   without it that force causes no friction
+    length         distance between the two ends that carry moments across the axis; without it
+                   these moments cause no friction
+    width          distance between the two flanks of a slide that carry the moment about its axis;
+                   without it this moment causes no friction
+    constant       friction from a seal or a preload, which always acts while the joint slides; a
+                   torque if the joint turns
     """
 
     type: ClassVar[str] = "joint_friction"
@@ -111,8 +113,17 @@ class Own(Along):
 STICKING = CODES["sticking"]
 SEVERAL = (
     Channel("force", "N", "friction along the surfaces, negative: against the sliding"),
-    Channel("normal_force", "N", "how the reaction presses what rubs together", least=0.0),
-    Channel("sliding_speed", "m/s", "of the second body against the first, where it rubs"),
+    Channel(
+        "normal_force",
+        "N",
+        "normal force with which the reaction presses the surfaces together",
+        least=0.0,
+    ),
+    Channel(
+        "sliding_speed",
+        "m/s",
+        "sliding speed of the second body relative to the first, where they rub",
+    ),
 )
 BALL = (*SEVERAL, Channel("moment", "N*m", "friction on the second body, world axes", 3))
 
@@ -328,8 +339,17 @@ ELEMENT = Element(
     reach=lambda row: Reach(),  # acts along a coordinate, whose joint says where that leads
     channels=(
         Channel("force", "drive", "friction on the second body, along the coordinate"),
-        Channel("normal_force", "N", "how the reaction presses what rubs together", least=0.0),
-        Channel("sliding_speed", "m/s", "of the second body against the first, where it rubs"),
+        Channel(
+            "normal_force",
+            "N",
+            "normal force with which the reaction presses the surfaces together",
+            least=0.0,
+        ),
+        Channel(
+            "sliding_speed",
+            "m/s",
+            "sliding speed of the second body relative to the first, where they rub",
+        ),
     ),
     loads={"force": "force"},
     slides=(Own.columns["law"].at, Own.columns["friction"].at),

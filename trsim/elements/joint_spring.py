@@ -1,6 +1,6 @@
-"""Spring and damper by laws of their own on the angle or the stroke of a joint.
+"""Spring and damper on the angle or the stroke of a joint, with user-defined laws.
 
-    x = coordinate - as drawn - free
+    x = coordinate - its value as drawn - free
     T = f(x) + w d(x')              -T on body j along or about the axis, T on body i
 
 f is the elastic force or torque, d the damper (sprung.py).
@@ -25,12 +25,13 @@ from trsim.varying import Function
 
 
 class JointSpring(Sprung):
-    """A spring and damper on a coordinate of a joint, by functions.
+    """A spring and damper on a coordinate of a joint, with laws given as functions.
 
-    joint        joint whose angle or stroke it pulls back; `shaft.angle` of one with several
-    elastic      what pulls back: a function of `stretch`, the coordinate less as drawn and `free`
-    damper       the same: a function of `rate`, with its sign
-    free         coordinate, counted from the drawing, at which the stretch is 0
+    joint        joint whose angle or stroke it pulls back; `shaft.angle` if the joint has several
+    elastic      elastic force or torque that pulls back, a function of `stretch`: the coordinate,
+                 measured from the drawing, minus `free`
+    damper       force or torque of the damper that pulls back, a function of `rate`, with its sign
+    free         coordinate, measured from the drawing, at which the stretch is 0
     """
 
     type: ClassVar[str] = "joint_spring"
@@ -98,9 +99,13 @@ ELEMENT = Element(
     pack=pack,
     acts_at=at_both,
     channels=(
-        Channel("force", "drive", "on the second body of the joint, along or about its axis"),
-        Channel("elastic", "drive", "what of it is elastic"),
-        Channel("stretch", "coordinate", "how far it is stretched"),
+        Channel(
+            "force",
+            "drive",
+            "force or torque on the second body of the joint, along or about its axis",
+        ),
+        Channel("elastic", "drive", "elastic part of the force"),
+        Channel("stretch", "coordinate", "stretch of the spring"),
     ),
     loads={"force": "force"},
     kernels={"coordinate": coordinate, "force": force, "energy": energy, "measure": measure},

@@ -2,15 +2,16 @@
 
     F = max(0, k d + c smoothstep(d / ramp) d')          d > 0: penetration
 
-Point on wall: d = -(p - w) . n with n the allowed side, fixed in the wall's body; F n acts at the
-point, -F n on the wall's body at the same place.  Joint: d = max(lower - x, x - upper), F acts
-along the axis of the joint; of a place on a curve along its tangent, on the point; of the bend of a
-joint about the axis it bends about (bend.py).  The damping
-fades in over the ramp, so there is no jump at the touch and no memory of the impact speed; soft
-impacts are right, where Lankarani-Nikravesh is not.  In the phase of contact the spring is drawn on
-to d < 0, where no accepted step ever is.  The end of the ramp and the place from which the force
-would pull are corners, located like a touch.  With a restitution a touch faster than the slowest
-impact takes no time (solve/march/impacts.py), and this force is that of what no longer bounces.
+Point against wall: d = -(p - w) . n, with n, towards the allowed side, fixed in the body of the
+wall.  F n acts at the point, and -F n on the body of the wall at the same position.  Joint: d =
+max(lower - x, x - upper).  F acts along the axis of the joint; for a point on a curve, on the point
+along the tangent; for the bend of a joint, about the axis about which it bends (bend.py).  The
+damping fades in over the ramp, so the force does not jump at the touch and does not depend on the
+impact speed.  Soft impacts are correct, unlike with Lankarani-Nikravesh.  During contact the law of
+the spring is continued to d < 0, where no accepted step ever ends.  The end of the ramp and the
+point beyond which the force would pull are corners of the law, located like a touch.  With a
+restitution, an impact faster than the slowest impact takes no time (solve/march/impacts.py), and
+this force acts only when the contact no longer bounces.
 """
 
 from math import pi
@@ -83,7 +84,7 @@ class Wall(Spec):
 
     body    the body
     at      a point of the plane, as drawn
-    normal  to the allowed side, as drawn; turns with the body
+    normal  normal towards the allowed side, as drawn; turns with the body
     """
 
     body: str
@@ -96,15 +97,16 @@ class LimitStop(Spec):
 
     point           what touches the wall
     wall            what it touches
-    joint           joint whose coordinate is limited; the place of a point on a curve is one, and
-                    NAME.bend the angle between shafts or the axes of a ball, counted from straight
-    lower           least coordinate
-    upper           largest coordinate
-    stiffness       of the contact
-    damping         of the contact, where the ramp is over
+    joint           joint whose coordinate is limited. For a point on a curve, the length along the
+                    curve; NAME.bend is the angle between shafts, or between the axes of a ball
+                    joint, measured from straight
+    lower           smallest allowed coordinate
+    upper           largest allowed coordinate
+    stiffness       stiffness of the contact
+    damping         damping of the contact, once the ramp is over
     ramp            penetration over which the damping fades in
-    restitution     rate after a touch over rate before; with it a touch takes no time
-    slowest_impact  with a restitution: the rate below which nothing bounces
+    restitution     rate after an impact divided by rate before; with it an impact takes no time
+    slowest_impact  rate below which nothing bounces, if there is a restitution
     """
 
     type: ClassVar[str] = "limit_stop"
@@ -387,7 +389,11 @@ ELEMENT = Element(
     reach=reach,
     channels=(
         Channel("normal_force", "drive", "contact force or torque; never negative", least=0.0),
-        Channel("penetration", "coordinate", "positive in contact, minus the free gap otherwise"),
+        Channel(
+            "penetration",
+            "coordinate",
+            "penetration, positive in contact; in flight, minus the gap",
+        ),
         Channel("force", "drive", "force (on an angle: torque) on the second body, world axes", 3),
     ),
     turning=turning,

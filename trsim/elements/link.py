@@ -1,9 +1,9 @@
-"""Link: a rod without mass, with a ball at each end, keeps two points at one distance.
+"""Link: a massless rod with a ball joint at each end keeps two points at a constant distance.
 
     Phi = |d| - l = 0          d from the point on i to the point on j      [Nikravesh1988]
 
-force is the axial one, positive in tension: lambda.  reaction on body j is -force d/|d| at its
-point; a rod of two balls takes no moment, so reaction_moment is zero.
+force is the axial force lambda, positive in tension.  reaction on body j is -force d/|d| at its
+point.  A rod between two ball joints transmits no moment, so reaction_moment is zero.
 """
 
 from math import sqrt
@@ -21,11 +21,12 @@ LEAST = 1e-12  # of the distance of its ends from the origin: less is rounding a
 
 
 class Link(Spec):
-    """A rod without mass between a point of each body, with a ball at each end.
+    """A massless rod between a point of each body, with a ball joint at each end.
 
-    bodies  the two bodies; reactions are those on the second one
-    points  its ends on the first and on the second body, as drawn
-    length  of the rod; as drawn unless given, otherwise the bodies are moved to it at the start
+    bodies  the two bodies; reactions are those acting on the second one
+    points  its ends, on the first and on the second body, as drawn
+    length  length of the rod; as drawn unless given. If it differs, the bodies are moved at the
+            start so that it fits
     """
 
     type: ClassVar[str] = "link"

@@ -2,9 +2,9 @@
 
     p = r + R s        p' = r' + omega x R s        p'' = r'' + omega' x R s + omega x (omega x R s)
 
-s is the point in the axes of the body, seen from its centre of mass.  The point is fixed in the
-body, and its axes turn with it.  Entries of other sections may name it where they take a place,
-`at: tip`, and its axes where they take a direction, `axis: tip.z`: they mean what is drawn.
+s is the point in the axes of the body, measured from its centre of mass.  The point is fixed in the
+body, and its axes turn with it.  Other entries may use its name for a position, `at: tip`, and its
+axes for a direction, `axis: tip.z`; both are taken as drawn.
 """
 
 from typing import ClassVar
@@ -20,7 +20,7 @@ from trsim.kernels.columns import V3, i8
 class Marker(Placed):
     """A point of a body, with axes.
 
-    body  the one it is fixed in; or `ground`
+    body  the body in which it is fixed, or `ground`
     at    the point, as drawn
     """
 

@@ -2,10 +2,11 @@
 
     Phi_1, 2 = u_i . a_j = 0,  w_i . a_j = 0      [Nikravesh1988]
 
-(u, w, a) is a right-handed triad with a the axis; all displacements are free, and the turn about a.
-The angle is that of body j's axes minus body i's about a, unwrapped; with d from the point on i to
-the point on j the stroke is a . d, x is u . d and y is w . d, zero as drawn.  It passes on no
-force: reaction is zero, reaction_moment on body j is across a.
+(u, w, a) is a right-handed triad with a the axis; all displacements and the rotation about a are
+free.  The angle is that of the axes of body j minus that of body i, about a, unwrapped.  With d
+from the point on i to the point on j, the stroke is a . d, x is u . d and y is w . d, all zero as
+drawn.  The joint transmits no force: reaction is zero, and reaction_moment on body j is
+perpendicular to a.
 """
 
 from typing import ClassVar
@@ -16,15 +17,16 @@ from trsim.fields import Spec, point, vector
 
 
 class Parallel(Spec):
-    """Two axes stay parallel: the second body goes where it likes and turns about the axis only.
+    """Two axes stay parallel: the second body moves freely but turns about the axis only.
 
-    bodies  the first one has the axis; moments are those on the second one
-    axis    the direction of both axes, as drawn; of any length: the angle grows about it, and the
+    bodies  the first one has the axis; moments are those acting on the second one
+    axis    direction of both axes, as drawn; of any length. The angle is positive about it, and the
             stroke along it
     x_axis  direction in which x grows, as drawn, made perpendicular to `axis`; y grows along axis
-            cross x.  Unless given the world axis behind the one next to `axis`: of z it is x
-    at      where reactions are told, as drawn; the second body's centre of mass unless
-            given: from there the second body's place is counted
+            cross x. Unless given, it follows from the world axis nearest to `axis`: x, y, z give y,
+            z, x
+    at      point at which reactions are reported and from which displacements are measured, as
+            drawn; the centre of mass of the second body unless given
     """
 
     type: ClassVar[str] = "parallel"

@@ -1,10 +1,10 @@
-"""Parked: a body that an event holds where it is.
+"""Parked: a body that an event holds in its present position.
 
     Phi_1..3 = r - r_0 = 0                                  its centre of mass
     Phi_4..6 = u_0 . a = 0,  w_0 . a = 0,  w_0 . u = 0      its axes
 
-r_0 and the axes u_0, w_0 are those of the body as it was parked.  force acts on the body at
-its centre of mass, moment about it, world axes.
+r_0 and the axes u_0, w_0 are those of the body when it was parked.  force acts on the body at its
+centre of mass, and moment about it, in world axes.
 """
 
 from typing import ClassVar
@@ -21,7 +21,8 @@ UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 class Parked(Spec):
-    """Made from the key `park` of events and phases, one instance per body that is ever parked.
+    """Created from the key `park` of events and phases, one instance for each body that is ever
+    parked.
 
     body  the body
     """
@@ -130,8 +131,10 @@ ELEMENT = Element(
     rows=tuple(row.name for row in (*POINT, *TILTS, TURN)),
     acts_at=lambda row: ((Own.of(row).j, (0.0, 0.0, 0.0)),),
     channels=(
-        Channel("force", "N", "that holds the parked body at its centre of mass, world axes", 3),
-        Channel("moment", "N*m", "that holds it, about its centre of mass", 3),
+        Channel(
+            "force", "N", "force that holds the parked body, at its centre of mass, world axes", 3
+        ),
+        Channel("moment", "N*m", "moment that holds it, about its centre of mass", 3),
     ),
     hold=hold,
     n_mem=9,

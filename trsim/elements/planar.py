@@ -3,10 +3,11 @@
     Phi_1    = a_i . d = 0                        d from the point on i to the point on j
     Phi_2, 3 = u_i . a_j = 0,  w_i . a_j = 0      [Nikravesh1988]
 
-a is the normal of the plane, u its x axis, w = a x u its y axis; all turn with body i.  x = u_i . d
-and y = w_i . d are zero as drawn; the angle is that of body j's axes minus body i's about a,
-unwrapped.  reaction acts on body j at its point, along a; reaction_moment across a.  Where a is the
-z axis of a planar scene the joint holds nothing there, and gives a body its three coordinates.
+a is the normal of the plane, u its x axis and w = a x u its y axis; all three turn with body i.
+x = u_i . d and y = w_i . d are zero as drawn; the angle is that of the axes of body j minus that of
+body i, about a, unwrapped.  reaction acts on body j at its point, along a; reaction_moment is
+perpendicular to a.  If a is the z axis of a planar scene, the joint constrains nothing there; it
+only gives a body its three coordinates.
 """
 
 from typing import ClassVar
@@ -17,11 +18,12 @@ from trsim.fields import vector
 
 
 class Planar(Joint):
-    """A plane of the second body on a plane of the first: a plate that slides on a table.
+    """A plane of the second body stays in a plane of the first: a plate that slides on a table.
 
-    axis    normal of the planes, about which the angle grows, as drawn; of any length
+    axis    normal of the planes, as drawn; of any length. The angle is positive about it
     x_axis  direction in which x grows, as drawn, made perpendicular to `axis`; y grows along axis
-            cross x.  Unless given the world axis behind the one next to `axis`: of z it is x
+            cross x. Unless given, it follows from the world axis nearest to `axis`: x, y, z give y,
+            z, x
     """
 
     type: ClassVar[str] = "planar"

@@ -2,7 +2,7 @@
 
     s = a . (P - O)        a and O fixed in the body `frame`, P in `body`
 
-so the rate and the acceleration are those an observer on `frame` sees along a.
+The rate and the acceleration are those that an observer on `frame` sees along a.
 """
 
 from typing import ClassVar
@@ -17,11 +17,11 @@ from trsim.fields import Spec, point, vector
 class Point(Spec):
     """A component of the position of a point of a body.
 
-    body    the one the point is fixed in
+    body    the body in which the point is fixed
     at      the point, as drawn
     axis    direction of the component, as drawn; of any length
-    frame   `world`, or a body or the body of a point, in which axis and origin are fixed
-    origin  place from which it is counted, as drawn
+    frame   `world`, or the name of a body or point: axis and origin are fixed in that body
+    origin  point from which the position is measured, as drawn
     """
 
     type: ClassVar[str] = "point"

@@ -3,8 +3,9 @@
     Phi_1 = n . (p - c) = 0          n, c at the footpoint of p, see on_curve.py
     Phi_2 = a_i . d = 0              a the normal of the plane of the curve, d from its origin to p
 
-The coordinate is the length along the curve from its beginning, over any number of turns where it
-is closed.  reaction acts on body j at its point, across the curve: there is no friction.
+The coordinate is the length along the curve from its beginning; on a closed curve it goes on over
+any number of turns.  reaction acts on body j at its point, perpendicular to the curve: there is no
+friction.
 """
 
 from typing import ClassVar
@@ -33,9 +34,10 @@ from trsim.kernels.lazy import internal
 class PointOnCurve(OnCurve):
     """A point of the second body on a plane curve of the first: a bead on a wire, a pin in a slot.
 
-    curve  of the first body, with which it moves; where an open one ends the run does, as `jammed`
-    at     the point of the second body, as drawn: on the curve, or so near that the start may move
-           it there
+    curve  the curve, which moves with the first body; at the end of an open curve the run ends as
+           `jammed`
+    at     the point of the second body, as drawn: on the curve, or so close that it can be moved
+           there at the start
     """
 
     type: ClassVar[str] = "point_on_curve"

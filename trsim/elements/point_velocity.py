@@ -3,8 +3,9 @@
     s = a . v         s' = a . v' + (omega_f x a) . v          a fixed in the body `frame`
     s = |v|           s' = v . v' / |v|,  |v'| where v = 0
 
-v is the velocity of the point in the world: along an axis that turns, it is what a gauge fixed in
-`frame` shows of it, and not the rate of a place seen from there (that is `rate` of point.py).
+v is the velocity of the point in the world.  Along a rotating axis the sensor shows the component
+of v along that axis, not the rate of the position seen from `frame`; for that use `rate` of a
+`point`.
 """
 
 from math import sqrt
@@ -21,10 +22,10 @@ from trsim.kernels.lazy import internal
 class PointVelocity(Spec):
     """A component of the velocity of a point of a body, or its speed.
 
-    body   the one the point is fixed in
+    body   the body in which the point is fixed
     at     the point, as drawn
-    axis   direction of the component, as drawn; the speed unless given
-    frame  `world`, or a body or the body of a point, with which the axis turns
+    axis   direction of the component, as drawn; without it the sensor shows the speed
+    frame  `world`, or the name of a body or point: the axis turns with that body
     """
 
     type: ClassVar[str] = "point_velocity"

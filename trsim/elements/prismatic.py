@@ -1,4 +1,4 @@
-"""Prismatic joint: body j slides along an axis of body i and does not turn against it.
+"""Prismatic joint: body j slides along an axis of body i and does not rotate relative to it.
 
     Phi_1, 2 = u_i . d = 0,  w_i . d = 0          d from the point on i to the point on j
     Phi_3, 4 = u_i . a_j = 0,  w_i . a_j = 0
@@ -17,9 +17,10 @@ from trsim.fields import Spec, point, vector
 class Prismatic(Spec):
     """A slide of the second body along an axis of the first.
 
-    bodies  the first one has the axis; reactions are those on the second one
+    bodies  the first one has the axis; reactions are those acting on the second one
     axis    direction in which the stroke grows, as drawn; of any length
-    at      where reactions are told, as drawn; the second body's centre of mass unless given
+    at      point at which reactions are reported, as drawn; the centre of mass of the second body
+            unless given
     """
 
     type: ClassVar[str] = "prismatic"

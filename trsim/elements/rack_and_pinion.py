@@ -1,11 +1,12 @@
-"""Rack and pinion: the angle of a hinge and the stroke of a slide keep a ratio.
+"""Rack and pinion: a constant ratio between the angle of a hinge and the stroke of a slide.
 
     ratio     s - s_0 = ratio (phi - phi_0)                of the coordinates of the joints
-    radius    s' b = (w a x n) . b = w r (a x n/r) . b     w, s' against the carrier
+    radius    s' b = (w a x n) . b = w r (a x n/r) . b     w, s' relative to the carrier
 
-a is the axis of the pinion, b that of the slide, across a, and n, of length r, from the axis of the
-pinion to the pitch line of the rack, where the place of the slide is drawn.  w is the rate of phi
-where the carrier is the first body of the hinge, else minus that, and s' alike.
+a is the axis of the pinion and b that of the slide, perpendicular to a.  n, of length r, goes from
+the axis of the pinion to the pitch line of the rack, on which `at` of the slide lies.  w is the
+rate of phi if the carrier is the first body of the hinge, otherwise minus that rate; the same holds
+for s'.
 """
 
 from typing import Annotated, ClassVar
@@ -33,11 +34,11 @@ from trsim.frame import across
 class RackAndPinion(Transmission):
     """A pinion that rolls on a rack, both on one carrier, which may move.
 
-    joints  the hinge of the pinion, then the slide of the rack; they share the carrier, which may
-            also be the ground, as may be the rack
-    radius  of the pitch circle; which way the rack goes follows from the drawing: `at` of its slide
-            must lie on the pitch line, where the two touch or beside that
-    ratio   stroke over angle, as their sensors show them, with its sign, instead of a radius
+    joints  the hinge of the pinion, then the slide of the rack. They share the carrier; the carrier
+            or the rack may be the ground
+    radius  radius of the pitch circle. The drawing decides which way the rack moves: `at` of its
+            slide must lie on the pitch line, anywhere along it
+    ratio   stroke divided by angle, with the sign that their sensors show; instead of a radius
     """
 
     type: ClassVar[str] = "rack_and_pinion"

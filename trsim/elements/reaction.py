@@ -1,9 +1,10 @@
-"""Reaction sensor: a component, or the size, of what a joint puts on one of its bodies.
+"""Reaction sensor: a component, or the magnitude, of the force or moment of a joint on a body.
 
     s = a . F,  a . (M - p x F)      or  |F|,  |M - p x F|         F, M = -J^T lambda of its rows
 
-F and M are those on the body `on`, M about its centre of mass, p the arm of the place `at`; the
-axis a is fixed in the body `frame`.  Of a joint with clearance they are those of its contact too.
+F and M act on the body `on`, M about its centre of mass; p is the vector from there to the point
+`at`.  The axis a is fixed in the body `frame`.  For a joint with clearance F and M include its
+contact.
 """
 
 from math import sqrt
@@ -20,15 +21,15 @@ from trsim.kernels.columns import V3, f8
 
 
 class Reaction(Spec):
-    """What a joint puts on one of its bodies: a component of the force or of the moment, or a size.
+    """Force or moment of a joint on one of its bodies: a component, or the magnitude.
 
     joint  the joint
     of     `force` or `moment`
-    axis   direction of the component, as drawn; the size unless given
-    frame  `world`, or a body or the body of a point, with which the axis turns
-    on     the body that is acted on; the second one of the joint unless given
-    at     place about which a moment is taken, as drawn; it is fixed in the body that is acted on;
-           that of the joint unless given
+    axis   direction of the component, as drawn; without it the sensor shows the magnitude
+    frame  `world`, or the name of a body or point: the axis turns with that body
+    on     the body on which force and moment act; the second one of the joint unless given
+    at     point about which the moment is taken, as drawn; it is fixed in the body `on`. The point
+           of the joint unless given
     """
 
     type: ClassVar[str] = "reaction"
@@ -98,7 +99,7 @@ ELEMENT = Element(
     section="sensors",
     spec=Reaction,
     pack=pack,
-    channels=(Channel("", "drive", "component, or size, of the force or moment"),),
+    channels=(Channel("", "drive", "component, or magnitude, of the force or moment"),),
     turning=turning,
     kernels={"measure": measure},
     example=on_pendulum("pull: {type: reaction, joint: hinge, axis: [1, 0, 0], frame: rod}"),

@@ -1,14 +1,14 @@
-"""Relative angle: by how much one body is turned against another about an axis, over any turns.
+"""Relative angle: rotation of one body relative to another about an axis, over any number of turns.
 
     tan x = (w_i . u_j - u_i . w_j) / (u_i . u_j + w_i . w_j)
-    x'    = omega . (a_i + a_j) / (1 + a_i . a_j)          omega: of body j against body i
+    x'    = omega . (a_i + a_j) / (1 + a_i . a_j)          omega: of body j relative to body i
     s     = sign (x - x_drawn) + at_start
 
-The triads u, w, a of both bodies coincide as drawn, a along the axis.  Between bodies that turn
-about the axis alone x is their angle, as on a hinge.  Where the axes a_i and a_j lean apart, x is
-the turn about them that is left when the shortest turn that brings one to the other is taken away
-(swing and twist): it is the same seen from either body, and a constant velocity joint keeps it.
-Where the axes point in opposite directions there is no such angle.
+The triads u, w, a of both bodies coincide as drawn, with a along the axis.  For bodies that turn
+about the axis alone, x is their angle, as on a hinge.  If the axes a_i and a_j are tilted apart, x
+is the rotation about them that remains after the shortest rotation from one to the other is removed
+(swing and twist).  It is the same seen from either body, and a constant-velocity joint keeps it
+constant.  If the axes point in opposite directions, no such angle exists.
 """
 
 from math import atan2
@@ -32,13 +32,15 @@ from trsim.kernels.lazy import internal
 
 
 class RelativeAngle(Spec):
-    """How far the second body is turned against the first about an axis; it needs no joint.
+    """The angle by which the second body is rotated relative to the first about an axis; no joint
+    is needed.
 
-    bodies    the two; the angle grows as the second one turns about the axis against the first
-    axis      direction, as drawn; it is fixed in both bodies
-    at        place on a flexible bar, as drawn; its middle unless given
-    sign      -1 counts the other way round
-    at_start  what it shows as drawn
+    bodies    the two bodies; the angle grows as the second one turns about the axis relative to the
+              first
+    axis      direction of the axis, as drawn; it is fixed in both bodies
+    at        point of a flexible bar, as drawn; its middle unless given
+    sign      -1 reverses the sign
+    at_start  value of the sensor as drawn
     """
 
     type: ClassVar[str] = "relative_angle"

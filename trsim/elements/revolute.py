@@ -4,8 +4,8 @@
     Phi_4    = u_i . a_j = 0
     Phi_5    = w_i . a_j = 0               [Nikravesh1988]
 
-(u, w, a) is a right-handed triad with a the axis.  The joint angle is that of body j's axes minus
-body i's about a, unwrapped.  reaction is the force on body j at the pin, world axes.
+(u, w, a) is a right-handed triad with a the axis.  The joint angle is the angle of the axes of body
+j minus that of body i, about a, unwrapped.  reaction is the force on body j at the pin, world axes.
 """
 
 from typing import ClassVar

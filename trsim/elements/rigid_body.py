@@ -2,9 +2,9 @@
 
     m r'' = F,    I omega' + omega x I omega = M          omega and I in body axes
 
-Its axes are at t = 0 those of the frame it is drawn in, the world's, its file's or its instance's,
-unless `angle` turns them about the z axis of that frame.  There is no force kernel: the equations
-of motion hold the masses (assemble/equations.py).
+At t = 0 its axes are those of the frame in which it is drawn (the world, the file or the instance),
+unless `angle` rotates them about the z axis of that frame.  There is no force kernel: the masses
+are in the equations of motion (assemble/equations.py).
 """
 
 from math import dist
@@ -38,20 +38,26 @@ SWITCH = BeforeValidator(_switched_off, json_schema_input_type=Cable | Literal[F
 class RigidBody(Spec):
     """A rigid body and its centre of mass.
 
-    mass              its mass; with a shape what all of it weighs, unless its densities tell
-    inertia           about the centre of mass: one about z, for a planar scene; three principal
-                      ones; or Ixx, Iyy, Izz, Ixy, Ixz, Iyz, products with the sign of the
-                      tensor's entries, in body axes; with a shape that of the shape unless given
-    at                centre of mass, as drawn; with a shape that of the shape unless given
-    shape             solids and holes it is made of, as drawn: mass, inertia and centre follow
-    density           of those solids that have none of their own
-    angle             turns the body axes about z; those of an instance about the z of its frame
-    velocity          of the centre of mass at the start; where any body has a velocity, clearance
-                      joints start free, otherwise as ideal ones
-    angular_velocity  at the start, world axes, or those in which it is drawn
-    flexible          what makes it an ancf_cable: a straight bar between the two of its joints that
-                      lie farthest apart; its mass is the body's unless a density is given, its
-                      inertia that of the bar; `false` in a file that extends makes it rigid again
+    mass              mass of the body; with a shape, the mass of the whole shape, unless densities
+                      give it
+    inertia           moments of inertia about the centre of mass, in body axes: one about z, for a
+                      planar scene; three principal ones; or Ixx, Iyy, Izz, Ixy, Ixz, Iyz, with the
+                      products signed as entries of the tensor. With a shape it follows from the
+                      shape unless given
+    at                centre of mass, as drawn; with a shape it follows from the shape unless given
+    shape             solids and holes that make up the body, as drawn; mass, inertia and centre of
+                      mass follow from them
+    density           density of all solids without a density of their own
+    angle             angle by which the body axes are rotated about z; in an instance, about the z
+                      axis of its frame
+    velocity          velocity of the centre of mass at the start. If any body has a velocity,
+                      clearance joints start free; otherwise they start as ideal joints
+    angular_velocity  angular velocity at the start, in world axes, or in the axes in which the body
+                      is drawn
+    flexible          makes the body an ancf_cable: a straight bar between those two of its joints
+                      that are farthest apart. Its mass is that of the body unless a density is
+                      given; its inertia is that of the bar. `false`, in a file that extends
+                      another, makes it rigid again
     """
 
     model_config = ConfigDict(

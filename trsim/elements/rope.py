@@ -2,25 +2,27 @@
 
     Phi = sum_j (l_j - rho_j alpha_j) - s_1 r_1 phi_1 + s_n r_n phi_n - const = 0
 
-Part j goes from place a to place b, whose centres are D apart, along the unit vector e, with its
-normal n to the left of e.  A place has a radius r, zero where it is a point or an eye, and a side
-s: 1 where the rope goes round it to the left, counterclockwise, and -1 to the right:
+Part j runs from guide a to guide b, whose centres are D apart, along the unit vector e; its normal
+n points to the left of e.  A guide (a point, eye, wheel or drum) has a radius r, zero for a point
+or an eye, and a side s: 1 if the rope goes round it to the left, counterclockwise, and -1 if to the
+right:
 
     n . D = rho = s_b r_b - s_a r_a        l = e . D = (D . D - rho^2)^(1/2)
 
-    alpha    angle of e, unwrapped; what the rope lies along of a wheel is r s (alpha' - alpha) of
-             the parts behind and before it
-    phi      angle of a drum, which is a wheel at an end: what is wound on it turns with it
+    alpha    angle of e, unwrapped; the rope touches a wheel over the length r s (alpha' - alpha),
+             of the parts after and before it
+    phi      angle of a drum, which is a wheel at an end; the rope wound on it turns with it
 
 As e turns by d alpha, l changes by e . dD + rho d alpha, so
 
     Phi'  = sum e . D' - s_1 r_1 phi_1' + s_n r_n phi_n'
     Phi'' = sum (e . D'' + (D' . D' - (e . D')^2) / l) + ...
 
-Each part pulls at the centres, and a drum is turned as well, by tension times radius.  A wheel that
-is no end is not turned: it has no friction, and inertia is that of a drum of two ropes.  tension is
-the multiplier, positive in tension; the row holds both ways.  Through points alone the rope may lie
-in space; wheels are those of a scene in the x-y plane.
+Each part pulls at the centres; on a drum it also exerts the torque tension times radius.  A wheel
+between the ends is not turned by the rope, because there is no friction; for a wheel with inertia
+use two ropes that end on the same drum.  tension is the multiplier, positive in tension; the row
+acts in both directions, so the rope can also push.  A rope through points and eyes alone may lie in
+space; wheels need a scene in the x-y plane.
 """
 
 from itertools import pairwise
@@ -49,10 +51,11 @@ SLACK = 1e-6  # of the largest tension: what is none
 class Place(Spec):
     """What a rope goes through, or over.
 
-    body    the body it is on; or `ground`
+    body    the body it is on, or `ground`
     at      the eye, or the centre of the wheel, as drawn
-    radius  of a wheel, or of a drum where it is an end, to the middle of the rope; 0: none
-    turn    which way the rope goes round it, seen against z: left is counterclockwise
+    radius  radius to the middle of the rope, of a wheel, or of a drum at an end; 0: an eye or a
+            point
+    turn    which way the rope goes round it, seen against the z direction: left is counterclockwise
     """
 
     type: ClassVar[str] = "place"
@@ -68,11 +71,11 @@ class Place(Spec):
 
 
 class Rope(Spec):
-    """A rope that does not stretch, without mass: it slides through eyes and over wheels.
+    """A massless rope that does not stretch; it slides through eyes and over wheels.
 
-    through  two places or more, in their order; the first and the last are its ends: fixed there,
-             or wound on a drum
-    length   between the ends, without what is wound on drums; as drawn unless given
+    through  two or more points, eyes or wheels, in order; the first and the last are its ends,
+             fixed there or wound on a drum
+    length   length between the ends, without what is wound on drums; as drawn unless given
     """
 
     # it has no two bodies and no place of its own
@@ -326,8 +329,13 @@ ELEMENT = Element(
     rows=("length",),
     bears=False,
     channels=(
-        Channel("tension", "N", "of the rope, all along; negative where it would be slack"),
-        Channel("push", "N", "by which it pushes where it would be slack", least=0.0),
+        Channel(
+            "tension",
+            "N",
+            "tension of the rope, the same along its length; negative where "
+            "the rope would be slack",
+        ),
+        Channel("push", "N", "force with which it pushes where it would be slack", least=0.0),
     ),
     loads={"tension": "force"},
     judged=lambda _: True,

@@ -4,10 +4,10 @@
     Phi_3, 4 = u_i . a_j = 0,  w_i . a_j = 0
     Phi_5    = a_i . d - h (theta - theta_0) = 0,    h = pitch/(2 pi)      [Nikravesh1988]
 
-theta is the angle of body j's axes minus body i's about a, unwrapped over any number of turns, and
-theta_0 what it is as drawn; the stroke a_i . d is zero there.  A positive pitch is a right-handed
-thread.  reaction and reaction_moment act on body j at its point; along the axis they are F and
-M = -h F, for the thread has no friction:  2 pi M + pitch F = 0.
+theta is the angle of the axes of body j minus that of body i, about a, unwrapped over any number of
+turns, and theta_0 its value as drawn, where the stroke a_i . d is zero.  A positive pitch is a
+right-handed thread.  reaction and reaction_moment act on body j at its point; along the axis they
+are F and M = -h F, because the thread has no friction:  2 pi M + pitch F = 0.
 """
 
 from math import pi
@@ -49,11 +49,12 @@ class Pitch(Unit):
 
 
 class Screw(Joint):
-    """A nut of the second body on a screw of the first, or a screw of the second in a nut.
+    """A nut on the second body and a screw on the first, or a screw on the second in a nut.
 
-    axis   along which the stroke grows, and the angle about it, as drawn; of any length
-    pitch  advance in one turn; positive right-handed, negative left-handed.  A length, and so are
-           plain numbers, is that of a turn; `0.8 mm/rad` and `5 mm/turn` do too
+    axis   direction, as drawn; of any length. The stroke is positive along it, and the angle about
+           it
+    pitch  advance in one turn; positive right-handed, negative left-handed. A plain number or a
+           length is the advance per turn; `0.8 mm/rad` and `5 mm/turn` are possible too
     """
 
     type: ClassVar[str] = "screw"

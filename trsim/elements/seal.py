@@ -1,18 +1,19 @@
 """Seal: a soft strip along a line of body j that is pressed against a plane of body i.
 
-    h(u) = n . (r_j + R_j (a + u (b - a)) - r_i - p_i)      of the line's places from the plane
+    h(u) = n . (r_j + R_j (a + u (b - a)) - r_i - p_i)      height of the line over the plane
     x    = height - h                                       compression, 0 <= u <= 1
     q    = q_0 (x / x_0)^e                                  load per length, N/m, where x > 0
-    F_n  = L (integral of q du) n                           on body j, at its own centre of pressure
+    F_n  = L (integral of q du) n                           on body j, at the centre of pressure
     F_d  = L sum w q c x' n,   F_t = -L sum w q mu g(|v_t|) v_t / |v_t|
 
-The elastic load is integrated as it is, over the part of the line that is pressed: it depends on
-its length alone, however the contact breaks into patches.  Damping and friction are summed over
-Gauss's places on that part, or all of it over `springs` equal pieces of the line.  Forces act where
-the line's places are seen on the plane, on both bodies alike.
+The elastic load is integrated exactly over the part of the line that is compressed.  It depends on
+the length of that part alone, however the contact breaks into patches.  Damping and friction are
+summed over Gauss points on that part; with `springs`, all loads are summed over equal pieces of the
+line.  Forces act at the projections of the points of the line onto the plane, with opposite signs
+on the two bodies.
 
-Friction has a corner where a place of the line comes to `full_from`.  Steps end where the slowest
-of three places does: of a line that slides as a whole no other corner is left inside them.
+Friction has a corner where a point of the line reaches the speed `full_from`.  Steps end where the
+slowest of three points does; if the line slides as a whole, no other corner remains inside them.
 """
 
 from math import sqrt
@@ -65,7 +66,7 @@ class SealLine(Spec):
 
     body   the body
     start  one end, as drawn
-    end    the other one, as drawn
+    end    the other end, as drawn
     """
 
     type: ClassVar[str] = "line"
@@ -79,7 +80,7 @@ class SealPlane(Spec):
 
     body    the body
     at      a point of the plane, as drawn
-    normal  to the side of the seal, as drawn; turns with the body
+    normal  normal towards the seal, as drawn; turns with the body
     """
 
     type: ClassVar[str] = "plane"
@@ -89,18 +90,19 @@ class SealPlane(Spec):
 
 
 class Seal(Spec):
-    """A seal along a line, pressed against a plane.
+    """A seal along a line that is pressed against a plane.
 
-    line         along which it lies
+    line         the line along which it lies
     against      the plane it is pressed against
-    height       of the seal above its line where nothing presses it
-    load         per length, at the compression `at`
+    height       height of the seal above its line when it is not compressed
+    load         load per length at the compression `at`
     at           compression at which it has that load
-    exponent     of the compression
-    damping      part of the load that is added per speed of compression
+    exponent     exponent of the compression
+    damping      fraction by which the load increases per speed of compression
     friction     coefficient of friction
     full_from    sliding speed from which friction is full
-    springs      how many equal springs take its place; none: the load is integrated
+    springs      number of equal springs that replace it; without it the load is integrated along
+                 the line
     """
 
     type: ClassVar[str] = "seal"
@@ -385,11 +387,15 @@ ELEMENT = Element(
     acts_at=both_ends,
     reach=reach,
     channels=(
-        Channel("normal_force", "N", "across the plane, damping included; never negative", least=0),
-        Channel("friction_force", "N", "size of the friction", least=0.0),
-        Channel("compression", "m", "the largest along the line; minus the free gap otherwise"),
-        Channel("contact_length", "m", "how much of the line is pressed", least=0.0),
-        Channel("force", "N", "on the body of the line, world axes", 3),
+        Channel(
+            "normal_force", "N", "normal to the plane, damping included; never negative", least=0
+        ),
+        Channel("friction_force", "N", "magnitude of the friction", least=0.0),
+        Channel(
+            "compression", "m", "largest compression along the line; without contact, minus the gap"
+        ),
+        Channel("contact_length", "m", "length of the line that is compressed", least=0.0),
+        Channel("force", "N", "force on the body of the line, world axes", 3),
     ),
     turning=turning,
     judged=lambda row: Own.of(row).height > 0.0,

@@ -3,14 +3,15 @@
     F = m (a_c - g) - sum F_k
     M = I alpha + omega x I omega + (c - p) x m (a_c - g) - sum M_k       about the station p
 
-F and M are what the rest of the body puts on the part beyond the section: what a `fixed` joint
-between the two would show as its reaction and reaction_moment.  m, c and I are those of the part
-beyond, a_c is the acceleration of c; F_k and M_k are what joints, drives and forces put on that
-part, the moment about p.  Of a joint they are those of its constraint rows, -J^T lambda.
+F and M are the force and the moment of the rest of the body on the part beyond the section: the
+reaction and reaction_moment that a `fixed` joint between the two would show.  m, c and I are those
+of the part beyond, and a_c is the acceleration of c.  F_k and M_k are the loads of joints, drives
+and forces on that part, with the moment about p.  For a joint they come from its constraint rows,
+-J^T lambda.
 
 Components are in axes that turn with the body: x and y in the section, z along its normal, which
-points to the part beyond.  In a planar scene forces along the z of the world and moments about
-other axes are zero, as those of joints are.
+points to the part beyond.  In a planar scene, forces along the world z axis and moments about other
+axes are zero, as for joints.
 """
 
 from math import sqrt
@@ -53,17 +54,20 @@ LEAST = -1e-9  # of its inertia: what rounding may leave of the rest of a body
 
 
 class BodySection(Spec):
-    """What a rigid body carries at a station: normal and shear force, torsion and bending.
+    """Internal loads of a rigid body at a station: normal and shear force, torsion and bending.
 
-    body     the one that is cut; rigid
+    body     the rigid body that is cut
     at       the station, as drawn
     axis     normal of the section, as drawn; it points to the part beyond
-    x_axis   direction of the first components, as drawn; made perpendicular to the normal
-    mass     of the part beyond; of a body with a `shape` the part of that unless given
-    centre   its centre of mass, as drawn
-    inertia  about its centre of mass, given like that of a body and in the same axes
-    beyond   joints, drives and forces that act on the part beyond; what acts along the coordinate
-             of a joint goes with it. Unless given: those that act on that side of the section
+    x_axis   direction of the x components, as drawn; made perpendicular to the normal
+    mass     mass of the part beyond the section; for a body with a `shape` it follows from the
+             shape unless given
+    centre   centre of mass of the part beyond, as drawn
+    inertia  inertia of the part beyond about its centre of mass, given like that of a body and in
+             the same axes
+    beyond   joints, drives and forces that act on the part beyond. Forces and drives along the
+             coordinate of a joint go with that joint. Unless given: those that act on that side of
+             the section
     """
 
     type: ClassVar[str] = "section"
@@ -285,10 +289,15 @@ ELEMENT = Element(
     spec=BodySection,
     pack=pack,
     channels=(
-        Channel("force", "N", "on the part beyond, axes of the section: z normal, < 0 pulls", 3),
-        Channel("moment", "N*m", "the same about the station: z is torsion", 3),
-        Channel("shear", "N", "size of the force in the section", least=0.0),
-        Channel("bending", "N*m", "size of the moment in it", least=0.0),
+        Channel(
+            "force",
+            "N",
+            "force on the part beyond, axes of the section: z is normal, < 0 is tension",
+            3,
+        ),
+        Channel("moment", "N*m", "moment about the station, in the same axes: z is torsion", 3),
+        Channel("shear", "N", "magnitude of the force in the plane of the section", least=0.0),
+        Channel("bending", "N*m", "magnitude of the moment in that plane", least=0.0),
     ),
     turning=turning,
     kernels={"measure": measure},

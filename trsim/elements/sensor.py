@@ -2,8 +2,8 @@
 
     s = sign (x - x_drawn) + at_start          s' = sign x'
 
-Loads, expressions and plots use sensors; x is the angle or stroke of the joint, or its place on a
-curve; or its bend (bend.py), which is counted from straight unless `at_start` says otherwise.
+Loads, expressions and plots use sensors.  x is the angle or stroke of the joint, its position on a
+curve, or its bend (bend.py); a bend is measured from straight unless `at_start` is given.
 """
 
 from typing import Annotated, ClassVar, Literal
@@ -28,10 +28,10 @@ from trsim.kernels.columns import f8, i8
 class Sensor(Spec):
     """The coordinate of a joint: an angle (rad) or a stroke (m).
 
-    joint     joint whose coordinate it is; NAME.bend is the angle between the shafts of a
+    joint     joint whose coordinate is measured; NAME.bend is the angle between the shafts of a
               constant_velocity or a universal joint, or between the axes of a spherical one
-    sign      -1 counts the other way round
-    at_start  what it shows as drawn; of a bend what that is, unless given
+    sign      -1 reverses the sign
+    at_start  value of the sensor as drawn; a bend has its true value unless this is given
     """
 
     type: ClassVar[str] = "sensor"
@@ -83,7 +83,7 @@ def of_bend(bent, name, spec, at):
 CHANNELS = (
     Channel("", "coordinate", "coordinate of the joint"),
     Channel("rate", "coordinate/s", "its rate"),
-    Channel("acceleration", "coordinate/s^2", "its acceleration; none of a cam"),
+    Channel("acceleration", "coordinate/s^2", "its acceleration; not for a cam"),
 )
 
 

@@ -4,11 +4,11 @@
     F_2 = (M x a) / l              on body j at the floating bearing, across the axis
     F_1 = R - F_2                  on body j at the locating one
 
-R and M are reaction and reaction_moment on body j at the locating bearing, a the axis from it to
-the floating one and l their distance.  A bearing carries no moment, so M = l a x F_2 and what each
-carries is unique, as of a `spherical` and an `inline` joint in its place; the rows of a hinge are
-well conditioned however near the bearings are.  In a scene solved in the plane M is not known, and
-the locating bearing is told to carry all.
+R and M are reaction and reaction_moment on body j at the locating bearing, a is the axis from it to
+the floating one, and l their distance.  A bearing carries no moment, so M = l a x F_2, and the load
+of each bearing is unique, as it would be with a `spherical` and an `inline` joint instead.  The
+rows of a hinge stay well conditioned however close the bearings are.  In a planar scene M is not
+known; all force is then reported at the locating bearing.
 """
 
 from math import sqrt
@@ -27,11 +27,11 @@ LEAST = 1e-9  # of the distance of the bearings from the origin: less is roundin
 
 
 class Shaft(Joint):
-    """A shaft of the second body in two bearings of the first, about the line through both.
+    """A shaft on the second body in two bearings of the first; its axis is the line through both.
 
-    at        place of the locating bearing, as drawn: it also carries the force along the axis
-    floating  place of the other bearing, which carries force across the axis only; the angle grows
-              about the axis from `at` to here
+    at        position of the locating bearing, as drawn; it also carries the force along the axis
+    floating  position of the other bearing, which carries only forces across the axis; the angle is
+              positive about the axis from `at` to here
     """
 
     type: ClassVar[str] = "shaft"

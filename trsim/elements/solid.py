@@ -24,18 +24,19 @@ MOST_CORNERS = 1000
 class Solid(Spec):
     """A box, a cylinder, a sphere or a plate of any outline; or a hole of this shape.
 
-    box       its edges along its x, y and z axis
-    cylinder  its diameter, about its z axis
-    sphere    its diameter
-    polygon   the corners [x, y] of an outline in its x-y plane, in order, seen from `at`
-    length    of a cylinder, or thickness of a polygon, along its z axis, half of it on either side
-    wall      thickness of the wall of a tube or of a hollow sphere
-    at        its middle, of a polygon the origin of the corners, as drawn
-    axis      its z axis, as drawn; of any length
-    x_axis    its x axis, as drawn, made perpendicular to `axis`
-    density   of its material; that of the body unless given
-    mass      its mass, instead of a density
-    hole      takes the shape away from the others
+    box       edge lengths of a box along its x, y and z axes
+    cylinder  diameter of a cylinder about its z axis
+    sphere    diameter of a sphere
+    polygon   corners [x, y] of an outline in its x-y plane, in order, measured from `at`
+    length    length of a cylinder, or thickness of a polygon, along the z axis; half of it on
+              either side
+    wall      wall thickness of a tube or of a hollow sphere
+    at        its centre, as drawn; for a polygon, the origin of the corners
+    axis      direction of its z axis, as drawn; of any length
+    x_axis    direction of its x axis, as drawn, made perpendicular to `axis`
+    density   density of its material; that of the body unless given
+    mass      mass of the solid, instead of a density
+    hole      whether the solid is a hole: it is subtracted from the others
     """
 
     type: ClassVar[str] = "solid"

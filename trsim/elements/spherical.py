@@ -18,8 +18,10 @@ from trsim.fields import vector
 class Spherical(Joint):
     """A ball joint between two bodies.
 
-    axis         of the first body, as drawn, from which its bend is counted: that of a socket
-    second_axis  of the second body, as drawn: that of a stud; that of the first one unless given
+    axis         direction on the first body, as drawn, from which the bend is measured: the axis of
+                 the socket
+    second_axis  direction on the second body, as drawn: the axis of the stud; equal to `axis`
+                 unless given
     """
 
     type: ClassVar[str] = "spherical"

@@ -1,8 +1,8 @@
-"""Spring, damper or rope by laws of their own, between two points.
+"""Spring, damper or rope between two points, with user-defined laws.
 
-    x = l - l_0                     stretch; l is the distance of the points
+    x = l - l_0                     stretch; l is the distance between the points
     T = f(x) + w d(x')              tension along the line, pulling body j toward body i
-    T = max(0, f + w d) for x > 0   where it only pulls, as a rope does, and 0 while it is slack
+    T = max(0, f + w d) for x > 0   if it can only pull, as a rope does; 0 while it is slack
 
 f is the elastic force, d the damper (sprung.py).  l_0 is the length as drawn unless given.  At
 l = 0 the line has no direction and the force is zero.
@@ -31,14 +31,14 @@ from trsim.varying import Function
 
 
 class Spring(Sprung):
-    """A spring, a damper or a rope between a point of each body, by functions.
+    """A spring, a damper or a rope between a point of each body, with laws given as functions.
 
     bodies        the two bodies
-    points        on the first and on the second body, as drawn
-    elastic       tension: a function of `stretch`
-    damper        tension: a function of `rate`, with its sign
+    points        its ends, on the first and on the second body, as drawn
+    elastic       elastic tension, a function of `stretch`
+    damper        tension of the damper, a function of `rate`, with its sign
     free_length   length at which the stretch is 0; the distance as drawn unless given
-    tension_only  it never pushes, and is slack below its free length
+    tension_only  true: it never pushes, and is slack below its free length
     """
 
     type: ClassVar[str] = "spring"
@@ -111,8 +111,8 @@ ELEMENT = Element(
     reach=reach_always,
     channels=(
         Channel("force", "N", "tension"),
-        Channel("elastic", "N", "what of it is elastic"),
-        Channel("length", "m", "distance of the two points"),
+        Channel("elastic", "N", "elastic part of the force"),
+        Channel("length", "m", "distance between the two points"),
     ),
     turning=between_points,
     picture="coil",

@@ -2,8 +2,8 @@
 
     T = T_0 + k (l - l_0) + c l'        tension along the line, pulling body j toward body i
 
-l is the distance of the points, l_0 the length as drawn unless given.  At l = 0 the line has no
-direction and the force is zero.
+l is the distance between the points, l_0 the free length (as drawn unless given).  At l = 0 the
+line has no direction and the force is zero.
 """
 
 from typing import Annotated, ClassVar
@@ -37,10 +37,10 @@ class SpringDamper(Spec):
     """A linear spring and damper between a point of each body.
 
     bodies       the two bodies
-    points       on the first and on the second body, as drawn
-    stiffness    of the spring
-    damping      of the damper
-    free_length  where the spring has its preload; the distance as drawn unless given
+    points       its ends, on the first and on the second body, as drawn
+    stiffness    stiffness of the spring
+    damping      damping of the damper
+    free_length  length at which the spring has its preload; the distance as drawn unless given
     preload      tension at the free length
     """
 
@@ -104,7 +104,7 @@ ELEMENT = Element(
     reach=reach_always,
     channels=(
         Channel("force", "N", "tension"),
-        Channel("length", "m", "distance of the two points"),
+        Channel("length", "m", "distance between the two points"),
     ),
     turning=between_points,
     picture="coil",

@@ -34,8 +34,8 @@ NOTHING = 1e-9  # of a force: rounding of one that is zero
 class Sprung(Spec):
     """Keys of every such spring.
 
-    damper_acts  when its damper does: always, or only where the stretch grows (`extension`) or
-                 falls (`compression`)
+    damper_acts  when the damper acts: always (`both`), or only while the stretch grows
+                 (`extension`) or decreases (`compression`)
     """
 
     damper_acts: Literal["both", "extension", "compression"] = "both"

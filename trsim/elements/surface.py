@@ -36,17 +36,17 @@ class Surface(Placed):
     """A surface of a body; it turns with the body.
 
     body           the body, or ground
-    shape          plane: through `at`, free on the side of its y axis; sphere around `at`;
-                   cylinder around the z axis; profile: a line in the x-y plane, drawn out along z
+    shape          plane: through `at`, free on the side of its y axis; sphere: around `at`;
+                   cylinder: around the z axis; profile: a line in the x-y plane, extruded along z
     at             its origin, as drawn; a place, or the name of a point
     x_axis         direction of its x axis, as drawn
     y_axis         direction of its y axis, made perpendicular to x
-    radius         of a sphere or a cylinder
-    hollow         whether it is free inside: a bowl, a hole, a slot
-    points         places [x, y] that a profile goes through
-    closed         whether a profile goes on from the last point to the first
-    smooth         whether it is a cubic spline, or straight from one point to the next
-    corner_radius  by which its corners are rounded where it is straight; 0: edges
+    radius         radius of a sphere or a cylinder
+    hollow         whether the free side is inside: a bowl, a hole, a slot
+    points         points [x, y] that a profile passes through
+    closed         whether a profile continues from the last point to the first
+    smooth         whether it is a cubic spline; otherwise it is straight from one point to the next
+    corner_radius  radius of the corners between its straight parts; 0: sharp edges
     """
 
     type: ClassVar[str] = "surface"
@@ -89,9 +89,9 @@ class Ball(Spec):
 
     body     the body
     at       its centre, as drawn; a place, or the name of a point
-    radius   0 of a point; of an outline that of its edge
-    corners  of an outline, [x, y] from `at` along the axes of the surface, as drawn: centres of its
-             round corners, in their order; two are a straight face
+    radius   radius; 0 for a point; for an outline, the radius of its rounded edge
+    corners  corners of an outline, in order: the centres [x, y] of its rounded corners, measured
+             from `at` along the axes of the surface, as drawn; two corners make a straight face
     """
 
     type: ClassVar[str] = "ball"

@@ -1,24 +1,25 @@
 """Surface contact: a ball, a roller or a point of body j against a surface of body i.
 
-    s, n              how far the centre is from the surface, and the way from it   laws/surfaces.py
-    d   = r - s       penetration; r is the radius of the ball, 0 of a point
+    s, n              distance from surface to centre, and its direction   laws/surfaces.py
+    d   = r - s       penetration; r is the radius of the ball, 0 for a point
     d'  = -n . v      v: the centre's velocity against body i at the same place, which turns n too
     F_n = f(d, d')    normal force on body j, along n                                laws/contact.py
     F_t               friction on body j, against v_t                               laws/friction.py
     v_t = v_j - v_i - n (n . (v_j - v_i))     at c, the centre less s n, of both bodies
 
-Both forces act at c, on both bodies alike, so that the pair adds no moment.  Bristles bend in two
-directions across n: one in the plane of the profile, t = n x z, and z.  Rolling and spinning are
-slowed by moments on both bodies, b_r and b_s the levers of the law, w = omega_j - omega_i:
+Both forces act at c, with opposite signs on the two bodies, so that the pair adds no moment.
+Bristles bend in two directions perpendicular to n: one in the plane of the profile, t = n x z, and
+z.  Rolling and spinning are slowed by moments on both bodies, with lever arms b_r and b_s and w =
+omega_j - omega_i:
 
     M = -F_n (b_r g(r |w_t|) w_t / |w_t| + b_s g(r |w_n|) sign(w_n) n),     w_n = w . n
 
-g is the friction law's part of full friction at a speed.  In flight there is no force whatever the
-gap; a touch is located and latches the approach speed, as in a clearance joint.
+g is the fraction of full friction that the friction law gives at a speed.  In flight there is no
+force at any gap; a touch is located and the approach speed stored, as in a clearance joint.
 
-Of an outline with a round edge (outlines.py) the centre is its place nearest to the surface.
-Where several places touch at once (laws/touches.py, corners on a plane) each has a row of its own,
-and a row in front of them stands for the whole: it has no force and tells their sum.
+For an outline with a rounded edge (outlines.py), the centre is its point nearest to the surface.
+If several points touch at once (laws/touches.py, corners on a plane), each has a row of its own,
+and a row before them represents the whole: it has no force itself and reports their sum.
 """
 
 from math import inf, sqrt
@@ -89,13 +90,13 @@ LOSSES = ("damping_loss", "friction_loss")
 
 
 class SurfaceContact(Spec):
-    """A ball, a roller or a point that meets a surface.
+    """A ball, a roller, a point or an outline that touches a surface.
 
-    surface             what it meets
-    ball                what meets it
-    contact             entry of contact_laws; may be left out where there is only one
-    rolling_resistance  lever of the normal force against rolling
-    spinning_friction   lever of the normal force against turning about the normal
+    surface             the surface that is touched
+    ball                the ball, roller, point or outline that touches it
+    contact             name of an entry of contact_laws; may be omitted if there is only one
+    rolling_resistance  lever arm of the normal force that resists rolling
+    spinning_friction   lever arm of the normal force that resists spinning about the normal
     """
 
     type: ClassVar[str] = "surface_contact"
@@ -401,26 +402,30 @@ def doubts(name, spec, largest):
 
 CHANNELS = (
     Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
-    Channel("friction_force", "N", "size of the friction", least=0.0),
+    Channel("friction_force", "N", "magnitude of the friction", least=0.0),
     Channel("contact_force", "N", "resultant of normal force and friction", least=0.0),
-    Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
-    Channel("penetration_rate", "m/s", "positive while approaching"),
-    Channel("sliding_speed", "m/s", "of the ball on the surface; 0 in flight", least=0.0),
+    Channel("penetration", "m", "penetration, positive in contact; in flight, minus the gap"),
+    Channel("penetration_rate", "m/s", "rate of the penetration, positive while approaching"),
+    Channel(
+        "sliding_speed", "m/s", "sliding speed of the ball on the surface; 0 in flight", least=0.0
+    ),
     Channel(
         "rolling_speed",
         "m/s",
-        "of the place of touch along surface and ball, their mean; 0 in flight",
+        "mean speed of the point of contact along surface and ball; 0 in flight",
         least=0.0,
     ),
-    Channel("force_behind", "N", "normal force of an open profile on its other side", least=0.0),
-    Channel("force_at_seam", "N", "normal force where two touches of a profile meet", least=0.0),
-    Channel("place", "m", "nearest place on the surface, in its axes", 3),
+    Channel("force_behind", "N", "normal force on the other side of an open profile", least=0.0),
+    Channel(
+        "force_at_seam", "N", "normal force where two contact points of a profile meet", least=0.0
+    ),
+    Channel("place", "m", "nearest point of the surface, in its axes", 3),
     Channel("force", "N", "contact force on the body of the ball, world axes", 3),
 )
-PATCH = Channel("patch_radius", "m", "of the circle in which it touches, by Hertz", least=0.0)
+PATCH = Channel("patch_radius", "m", "radius of the contact circle, by Hertz", least=0.0)
 LOST = (
-    Channel("damping_loss", "J", "energy that damping across the surface has taken"),
-    Channel("friction_loss", "J", "energy that friction and rolling resistance have taken"),
+    Channel("damping_loss", "J", "energy dissipated by damping normal to the surface"),
+    Channel("friction_loss", "J", "energy dissipated by friction and rolling resistance"),
 )
 OF_SEVERAL = (
     Channel("contact_force", "N", "resultant of all its touches", least=0.0),

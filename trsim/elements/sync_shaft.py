@@ -3,19 +3,21 @@
     M_k = g k (u_{k+1} - u_k) + g c (u'_{k+1} - u'_k)     torque in the segment behind station k
     G_k = g (M_k - M_{k-1})                               ideal force of the gear on piston k
 
-g is the turn of the shaft per stroke (rad/m), so a segment acts like a spring of g^2 k (N/m)
-between two pistons, which pulls who lags and holds who leads.  Of the ideal force the gear loses
+g is the rotation of the shaft per stroke (rad/m).  So a segment acts like a spring of g^2 k (N/m)
+between two pistons, which pulls the one that lags and holds back the one that leads.  Of the ideal
+force the gear loses
 
     (1 - eta) |G|           where the shaft moves the piston (G u' > 0)
     (1 / eta_b - 1) |G|     where the piston moves the shaft, eta_b = 2 - 1 / eta      [Shigley2015]
 
-to friction, against the motion: times u' / sqrt(u'^2 + v_t^2), so that it turns round smoothly over
-the speed v_t, `turning_speed`, and is whole well above it only.  With eta <= 1/2 a piston cannot
-turn the shaft at all: the gear is self-locking.  A piston that leads is then held as by
-eta_b = LOCKED, a hundred times harder than by an ideal gear: next to nothing is left of its lead.
+to friction, which opposes the motion.  It is multiplied by u' / sqrt(u'^2 + v_t^2), so that it
+changes direction smoothly over the speed v_t, `turning_speed`, and is full only well above it.
+With eta <= 1/2 a piston cannot turn the shaft at all: the gear is self-locking.  A piston that
+leads is then held with eta_b = LOCKED, a hundred times harder than by an ideal gear, so that almost
+nothing of its lead remains.
 
-Pistons are moved where their actuators have a `supply`.  Without one their motion is prescribed:
-then the shaft changes nothing, and its torque is only told.
+The shaft can move a piston only if its actuator has a `supply`.  Without one the motion of the
+piston is prescribed: then the shaft changes nothing, and its torque is only reported.
 """
 
 from math import sqrt
@@ -45,17 +47,19 @@ from trsim.kernels.lazy import internal
 
 
 class SyncShaft(Spec):
-    """A shaft that keeps actuators together.
+    """A shaft that synchronises actuators.
 
-    actuators      along the shaft, each driven by a `velocity`
-    stiffness      torsional, of a segment between two neighbours
-    damping        torsional, of a segment
-    ratio          turn of the shaft per stroke
-    efficiency     of the worm gears where the shaft moves a piston
-    self_locking   whether no piston can turn the shaft; by nature so up to an efficiency of 0.5
-    turning_speed  speed of a piston over which the friction of its gear turns round
-    lost_at        difference of the strokes of neighbours at which synchronism counts as lost and
-                   the run ends as `jammed`; of a shaft of strength M it is M / (stiffness ratio)
+    actuators      the actuators in their order along the shaft, each driven by a `velocity`
+    stiffness      torsional stiffness of a segment between two neighbours
+    damping        torsional damping of a segment
+    ratio          rotation of the shaft per stroke
+    efficiency     efficiency of the worm gears when the shaft moves a piston
+    self_locking   whether the gears are self-locking, so that no piston can turn the shaft; unless
+                   given, they are up to an efficiency of 0.5
+    turning_speed  speed of a piston over which the friction of its gear changes direction
+    lost_at        difference between the strokes of neighbours at which synchronism counts as lost
+                   and the run ends as `jammed`; for a shaft of strength M it is M / (stiffness
+                   ratio)
     """
 
     type: ClassVar[str] = "sync_shaft"
@@ -141,15 +145,15 @@ def channels(n):
     return (
         *(
             Channel(
-                f"torque_{k}", "N*m", f"in segment {k}, positive where the later actuator leads"
+                f"torque_{k}", "N*m", f"torque in segment {k}, positive if the later actuator leads"
             )
             for k in range(1, n)
         ),
         *(
-            Channel(f"force_{k}", "N", f"of the gear on piston {k}, along its stroke")
+            Channel(f"force_{k}", "N", f"force of the gear on piston {k}, along its stroke")
             for k in range(1, n + 1)
         ),
-        Channel("difference", "m", "largest difference of the strokes of neighbours"),
+        Channel("difference", "m", "largest difference between the strokes of neighbours"),
     )
 
 

@@ -2,7 +2,8 @@
 
     tau = T_0 - k (phi - phi_0) - c phi'        on body j about the axis, -tau on body i
 
-phi is the joint angle, phi_0 its value as drawn.  Of a stroke the same is a force along the axis.
+phi is the joint angle, phi_0 its value as drawn.  On a stroke it is a force along the axis, by the
+same law.
 """
 
 from typing import Annotated, ClassVar
@@ -27,11 +28,11 @@ from trsim.kernels.columns import f8, i8
 class TorsionSpring(Spec):
     """A spring and a damper about the axis of a joint, or along it.
 
-    joint      joint along whose coordinate it acts: an angle, or a stroke; of several the angle,
-               unless one is named
-    stiffness  of the spring
+    joint      joint on whose coordinate it acts, an angle or a stroke; if the joint has several,
+               the angle, unless one is named
+    stiffness  stiffness of the spring
     preload    torque or force on the second body, as drawn
-    damping    of the damper
+    damping    damping of the damper
     """
 
     type: ClassVar[str] = "torsion_spring"
@@ -96,7 +97,7 @@ ELEMENT = Element(
     spec=TorsionSpring,
     pack=pack,
     acts_at=at_both,
-    channels=(Channel("torque", "N*m", "on the second body of the joint, about its axis"),),
+    channels=(Channel("torque", "N*m", "torque on the second body of the joint, about its axis"),),
     loads={"torque": "torque", "force": "force"},
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""

@@ -193,7 +193,9 @@ def relation(coordinates: Any, coefficients: Any) -> Row:
 def channel(k: int, unit: str) -> Channel:
     """What the relation puts on the second body of the k-th joint."""
     word, way = ("torque", "about") if unit == "N*m" else ("force", "along")
-    return Channel(f"{word}_{k + 1}", unit, f"on the second body of joint {k + 1}, {way} its axis")
+    return Channel(
+        f"{word}_{k + 1}", unit, f"{word} on the second body of joint {k + 1}, {way} its axis"
+    )
 
 
 @internal

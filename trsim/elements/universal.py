@@ -3,18 +3,18 @@
     Phi_1..3 = r_j + p_j - r_i - p_i = 0
     Phi_4    = a_i . b_j = 0               [Nikravesh1988]
 
-a is the axis on body i, a of its triad; b the one on body j, u of its triad: the pins of the cross
-between them, which has no mass.  reaction is the force on body j at the point, world axes;
-reaction_moment is along a x b.
+a is the axis on body i (a of its triad), b the one on body j (u of its triad).  They are the pins
+of the cross between the bodies, which has no mass.  reaction is the force on body j at the point,
+world axes; reaction_moment is along a x b.
 
-The cross turns against body i by first_angle about a, body j against the cross by second_angle
-about b, both zero as drawn and unwrapped:
+The cross turns relative to body i by first_angle about a, and body j relative to the cross by
+second_angle about b.  Both are zero as drawn, and unwrapped:
 
     omega_j - omega_i = first_angle' a + second_angle' b,     a . b = 0
 
-The bend is the angle between the shafts, directions that turn with either body.  The angles are
-regular however far the joint bends.  A torque T along one of them is T a, or T b, on body j and the
-opposite on body i.
+The bend is the angle between the shafts; each shaft is a direction fixed in its body.  The angles
+are regular however far the joint bends.  A torque T along one of them is T a or T b on body j, and
+the opposite on body i.
 """
 
 from typing import ClassVar
@@ -33,14 +33,15 @@ SQUARE = 1e-6  # cosine of the angle between the axes as drawn
 
 
 class Universal(Joint):
-    """A cross joint: both bodies turn about the axes of a cross, one on each.
+    """A cross joint: each of the two bodies turns about one axis of a cross.
 
-    axis         of the cross on the first body, as drawn; of any length: the cross turns about it
-                 by `first_angle`, which is 0 as drawn
-    second_axis  on the second body, perpendicular to the first one as drawn: the second body turns
-                 about it by `second_angle`, against the cross
-    shafts       directions of both shafts, of the first one towards the joint and of the second one
-                 away from it, as drawn, between which its bend is; across both pins unless given
+    axis         pin of the cross on the first body, as drawn; of any length. The cross turns about
+                 it by `first_angle`, which is 0 as drawn
+    second_axis  pin of the cross on the second body, perpendicular to the first one as drawn. The
+                 second body turns about it by `second_angle` relative to the cross
+    shafts       directions of both shafts, as drawn: of the first one towards the joint, of the
+                 second one away from it. The bend is the angle between them. Perpendicular to both
+                 pins unless given
     """
 
     type: ClassVar[str] = "universal"

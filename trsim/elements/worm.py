@@ -1,16 +1,17 @@
-"""Worm gear: the angles of a worm and of its wheel, on axes that cross, keep a ratio.
+"""Worm gear: a constant ratio between the angles of a worm and its wheel, on crossed axes.
 
     ratio   phi_1 - phi_1,0 = ratio (phi_2 - phi_2,0)        of the angles of the joints
     teeth   starts w_1 = h teeth w_2                         h = 1 or -1: hand and drawing
 
-w_k is how fast worm and wheel turn against the carrier, about their axes: the rates of the angles
-where the carrier is the first body of the joints.  A worm of a right hand that turns about a_1
-moves the teeth it meets against a_1, as the nut of a screw that stays in its place.  These lie on
-the wheel at the end of -n, n from the worm's axis to the wheel's and across both:
+w_1 and w_2 are the angular velocities of worm and wheel relative to the carrier, about their axes:
+the rates of the angles if the carrier is the first body of the joints.  A right-handed worm that
+turns about a_1 moves the teeth it meets in the direction of -a_1, like the nut on a screw that
+turns in place.  These teeth are at the end of -n on the wheel, where n goes from the axis of the
+worm to that of the wheel, perpendicular to both:
 
     h = sign of  n . (a_1 x a_2)       right hand
 
-It passes on motion both ways: self-locking is friction.
+It transmits motion in both directions: self-locking needs friction.
 """
 
 from typing import Annotated, ClassVar, Literal
@@ -42,11 +43,11 @@ class Worm(Transmission):
     """A worm and its wheel, each on a hinge of one carrier, which may move.
 
     joints  the hinges of the worm and of the wheel; they share the carrier
-    teeth   starts of the worm, teeth of the wheel; which way the wheel turns follows from the hand
-            and from the drawing
-    hand    of the thread; right unless given
-    ratio   angle of the worm's joint over that of the wheel's, as their sensors show them, with its
-            sign, instead of teeth
+    teeth   starts of the worm, teeth of the wheel; the hand and the drawing decide which way the
+            wheel turns
+    hand    hand of the thread; right unless given
+    ratio   angle of the worm's joint divided by that of the wheel's, with the sign that their
+            sensors show; instead of teeth
     """
 
     type: ClassVar[str] = "worm"

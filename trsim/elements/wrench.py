@@ -2,12 +2,12 @@
 
     F = f_x e_x + f_y e_y + f_z e_z        at the point p of the body
     M = m_x e_x + m_y e_y + m_z e_z        about p
-    P = F . v_p + M . omega                its power, booked under loads
+    P = F . v_p + M . omega                its power, counted under loads in the energy balance
 
 f and m are numbers, expressions or tables of t and sensors, or the six columns of one table
-(components.py).  The axes e are those of the world (of a file or an instance with a frame those of
-it), of a body, or of a named point, with which they turn.  The same wrench at another point q of
-the body has M_q = M + (p - q) x F.
+(components.py).  The axes e are those of the world, or of the frame of the file or instance if it
+has one; or those of a body or a named point, with which they turn.  The same wrench at another
+point q of the body has M_q = M + (p - q) x F.
 """
 
 from typing import Annotated, Any, ClassVar
@@ -58,10 +58,11 @@ class Wrench(Load):
     """Six components of a load at a point of a body.
 
     body        the body it acts on
-    at          the point, as drawn; unless given that of `frame`, or the centre of mass
-    frame       whose axes the components are along: `world`, a body, or a named point
-    force       along x, y, z: three functions, two in a plane
-    moment      about x, y, z
+    at          point at which it acts, as drawn; the point named by `frame`, or the centre of mass,
+                unless given
+    frame       axes of the components: `world`, or those of a body or a named point
+    force       forces along x, y, z: three functions, or two in a plane
+    moment      moments about x, y, z
     components  all six in one table, instead of `force` and `moment`
     """
 
@@ -221,8 +222,8 @@ ELEMENT = Element(
     acts_at=acts_at,
     reach=reach,
     channels=(
-        Channel("force", "N", "at its point, world axes", 3),
-        Channel("moment", "N*m", "about its point, world axes", 3),
+        Channel("force", "N", "force at its point, world axes", 3),
+        Channel("moment", "N*m", "moment about its point, world axes", 3),
     ),
     turning=turning,
     loads={"force": "load", "moment": "moment of the load"},

@@ -1,17 +1,17 @@
-"""A contact law as the user writes it: an entry of `contact_laws`, named by joints and contacts.
+"""Contact law: an entry of `contact_laws`, which joints and contacts refer to by its name.
 
 stiffness: internal    Hertz, journal in bearing    K = 4/(3 (s_i + s_j)) sqrt(R_i R_j/(R_i - R_j))
            paper       the same with R_i + R_j
            cylinder    line contact over `width`
            a number    K in N/m^exponent            s = (1 - nu^2)/E
-           table       by points, `table`, with the damping of `normal`; of a ball on a surface
+           table       points of `table`, with the damping of `normal`; for a ball on a surface
 
-Laws of instantaneous impacts (laws/impact.py) rest on the same stiffness, with the damping of
-Hunt and Crossley for a restitution of 0 at the slowest impact.
+Laws of instantaneous impacts (laws/impact.py) use the same stiffness, with the damping that Hunt
+and Crossley's law has for a restitution of 0 at the slowest impact.
 
-pair: steel-rubber     moduli, friction and, where one is known, restitution of two materials; with
-                       it stiffness is `hertz` unless given, and friction modified_coulomb with
-                       v0 = 0 and v1 = 1 mm/s
+pair: steel-rubber     moduli, friction and, if known, restitution of two materials.
+                       Unless given, stiffness is then `hertz`, and friction modified_coulomb
+                       with v0 = 0 and v1 = 1 mm/s
 """
 
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
@@ -90,23 +90,27 @@ def _needs(spec: Any, what: str, keys: tuple[str, ...]) -> None:
 class ContactLaw(Spec):
     """The law of a contact between two bodies of given material and size.
 
-    pair                    two materials, for what is not given; the first is that of the surface
-    normal                  how force depends on penetration and its rate
-    stiffness               a word that computes it from size and material, or K, N/m^exponent
-    exponent                of the penetration
-    table                   rows [penetration, force] of stiffness table, both rising from [0, 0] on
-    bearing_radius          radius of the bearing, and lever of the friction
+    pair                    two materials, the first that of the surface; they supply the values
+                            that are not given
+    normal                  how the normal force depends on penetration and its rate
+    stiffness               a word, to compute it from size and material, or the value of K,
+                            N/m^exponent
+    exponent                exponent of the penetration
+    table                   rows [penetration, force], both rising from [0, 0], for `stiffness:
+                            table`
+    bearing_radius          radius of the bearing, which is also the lever arm of the friction
     width                   length of a line contact
-    youngs_modulus          of the bearing, and of the journal unless given
-    poisson                 Poisson's ratio of the bearing, and of the journal unless given
-    journal_youngs_modulus  of the journal
+    youngs_modulus          Young's modulus of the bearing, and of the journal unless that is given
+    poisson                 Poisson's ratio of the bearing, and of the journal unless that is given
+    journal_youngs_modulus  Young's modulus of the journal
     journal_poisson         Poisson's ratio of the journal
-    restitution             speed after an impact over speed before; of all laws but impact
-    damping                 of impact, where its ramp is over
-    ramp                    of impact: penetration over which the damping fades in
-    slowest_impact          floor of the remembered impact speed; of newton and poisson the approach
-                            below which nothing bounces
-    friction                along the surfaces
+    restitution             speed after an impact divided by speed before; for all laws except
+                            impact
+    damping                 damping of the law `impact`, once its ramp is over
+    ramp                    penetration over which the damping of the law `impact` fades in
+    slowest_impact          smallest impact speed that the law uses; for newton and poisson, the
+                            approach speed below which nothing bounces
+    friction                friction along the surfaces
     """
 
     type: ClassVar[str] = "contact_law"

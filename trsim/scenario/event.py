@@ -66,8 +66,9 @@ def _ending(value: Any) -> Any:
 class Motion(Spec):
     """The new motion of a drive; in it `t` is the time since the event.
 
-    position  the coordinate; for a rigid drive it must begin at the position of the joint
-    velocity  its rate; starts at the position prescribed until then, or else at that of the joint
+    position  prescribed coordinate; for a rigid drive it must begin at the position of the joint
+    velocity  prescribed rate; the motion starts at the position prescribed until then, or else at
+              that of the joint
     """
 
     type: ClassVar[str] = "motion"
@@ -84,7 +85,7 @@ class Motion(Spec):
 class Actions(Spec):
     """What happens at an event, all of it at once.
 
-    record   a line of all channels in the table `recorded`, with the values before the event
+    record   writes a row of all channels to the table `recorded`, with the values before the event
     set      drives that get another motion; a released drive engages again
     release  ideal joints that come apart, and drives that release their joint
     lock     joints to hold at their coordinate from then on; the force is NAME.lock.force
@@ -137,7 +138,7 @@ class Actions(Spec):
 class Event(Spec):
     """What happens when a sensor, or the time, crosses a value.
 
-    when     a sensor or t; or any channel, which is sampled, not bounded
+    when     a sensor or t; or any other channel, whose crossings are found by sampling
     value    the value to cross
     crosses  the direction of crossing
     times    how often it can happen; no limit unless given

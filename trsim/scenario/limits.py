@@ -20,10 +20,10 @@ Count = Annotated[int, Ge(1), Le(1_000_000)]
 class Limits(Spec):
     """How much of a kind a mechanism may have; more takes minutes to hours to assemble.
 
-    bodies   rigid ones and flexible bars
-    rows     constraint rows of joints and drives
-    nodes    of all flexible bars
-    entries  points, bodies, joints, drives, sensors, forces and events together
+    bodies   largest number of rigid bodies and flexible bars
+    rows     largest number of constraint rows of joints and drives
+    nodes    largest number of nodes of all flexible bars
+    entries  largest number of points, bodies, joints, drives, sensors, forces and events together
     """
 
     type: ClassVar[str] = "limits"

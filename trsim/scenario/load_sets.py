@@ -23,7 +23,7 @@ class LoadSet(Spec):
     """Loads that act together.
 
     loads     entries of `forces`: applied loads and the like
-    limit     factor of the limit load, the largest that is expected in service
+    limit     factor of the limit load, the largest load expected in service
     ultimate  factor of the ultimate load
     """
 

@@ -115,14 +115,14 @@ def wrapped(value: Value) -> list[str]:
 
 def listed() -> str:
     """The table in words, for `explain`."""
-    lines = ["Pairs of materials (`pair`), of static and sliding friction:", ""]
+    lines = ["Pairs of materials (`pair`), with static and sliding friction:", ""]
     for name, pair in PAIRS.items():
         e = "" if pair.restitution is None else f", restitution {pair.restitution.number:g}"
         lines.append(f"    {name:19} {pair.static.number:g} {pair.kinetic.number:g}{e}")
         lines += wrapped(pair.kinetic)
         if pair.restitution is not None:
             lines += wrapped(pair.restitution)
-    lines += ["", "Young's modulus and Poisson's ratio of materials:", ""]
+    lines += ["", "Materials, with Young's modulus and Poisson's ratio:", ""]
     for name, (E, nu) in MATERIALS.items():
         lines.append(f"    {name:19} {E.number / 1e9:g} GPa, {nu.number:g}")
         lines += dict.fromkeys((*wrapped(E), *wrapped(nu)))

@@ -50,7 +50,7 @@ def _lasting(about: str, default: Any) -> Any:
 class Until(Spec):
     """What ends a phase: a sensor, the time or any channel that crosses a value.
 
-    when     a sensor or t; or any channel, which is sampled, not bounded
+    when     a sensor or t; or any other channel, whose crossings are found by sampling
     value    the value to cross
     crosses  the direction of crossing; if the value is already passed, the phase ends at once
     """
@@ -61,7 +61,7 @@ class Until(Spec):
     crosses: Crosses = "up"
 
 
-class Stall(_lasting("for  how long it must stay below without interruption", ...)):  # type: ignore[misc]
+class Stall(_lasting("for  time for which both energies must stay below `energy`", ...)):  # type: ignore[misc]
     """When the mechanism counts as at rest, so that the phase would never end.
 
     energy  limit of the kinetic energy in 17 samples in a row, and of the energy that the
@@ -72,13 +72,13 @@ class Stall(_lasting("for  how long it must stay below without interruption", ..
     energy: Annotated[float, Gt(0), Unit("J")]
 
 
-class Phase(_lasting("for  time after its start at which it ends", None)):  # type: ignore[misc]
+class Phase(_lasting("for  time after which the phase ends", None)):  # type: ignore[misc]
     """A load step: its changes happen when it begins, and last until another phase changes them.
 
     name     its name; phase_1, phase_2 and so on unless given
     static   a static path: a sequence of equilibria as the drives advance; otherwise the phase is a
              motion over time
-    drive    new motions of drives; in them `t` is the time since the phase began
+    drive    new motions of drives, in which `t` is the time since the phase began
     release  ideal joints that come apart, and drives that release their joint
     lock     joints to hold at their coordinate
     unlock   locked joints to set free
@@ -86,7 +86,7 @@ class Phase(_lasting("for  time after its start at which it ends", None)):  # ty
     unpark   parked bodies to set free
     apply    forces and load sets that act in this phase, and only in phases that name them
     remove   forces and load sets that stop acting
-    record   a line of all channels in the table `recorded`, when the phase begins
+    record   writes a row of all channels to the table `recorded` when the phase begins
     taut     ropes that must not go slack in this phase; otherwise the run ends with status `slack`
     stall    ends the run with status `stalled` when the mechanism is at rest
     until    what ends the phase; the first of several counts

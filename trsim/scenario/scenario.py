@@ -122,23 +122,24 @@ class Baumgarte(Spec):
 class SolverSpec(Spec):
     """How, how far and how exactly the motion is integrated.
 
-    method         auto takes dop853 and, where the motion is stiff, radau; generalized_alpha is for
-                   two or three digits of stiff motion; rk4 has fixed steps; kinematic is
-                   for mechanisms driven in all their freedoms; static_path balances forces at
-                   each place, without inertia; scipy's are independent checks
-    formulation    equations that radau solves: index1 with projection, or for many bodies ggl, the
-                   stabilised index 2 with sparse matrices; found out unless given
+    method         auto: dop853, and radau where the motion is stiff; generalized_alpha: stiff
+                   motion to two or three digits; rk4: fixed steps; kinematic: mechanisms with all
+                   degrees of freedom driven; static_path: equilibrium at each position of the
+                   drives, without inertia; those of scipy: independent checks
+    formulation    equations that radau solves: index1 with projection, or, for many bodies, ggl,
+                   the stabilised index 2 with sparse matrices; chosen by trsim unless given
     end            time at which the run ends, at least 1e-20 s; needed by `run`, not by `check`
-    step           of rk4
-    tolerance      about the error of smooth motion at the end of a run, relative to the size of
-                   clearances or of bodies; steps are held to less
+    step           size of the steps of rk4
+    tolerance      approximate error of a smooth motion at the end of a run, relative to the size of
+                   clearances or of bodies; the error of one step is kept smaller
     stabilisation  how joints are kept closed
-    baumgarte      rates of that stabilisation
-    first_step     found out unless given
-    max_step       largest step; what is smooth and shorter than a 200th of the run needs it
-    max_steps      the run fails after as many
-    locate_events  end steps exactly where contacts open or close; rk4 does so only if told
-    force          go on where a fixed step is known to be too large
+    baumgarte      rates of Baumgarte's stabilisation
+    first_step     size of the first step; chosen by trsim unless given
+    max_step       largest step; give it if a smooth load or motion is shorter than a 200th of the
+                   run
+    max_steps      largest number of steps; the run fails if it needs more
+    locate_events  end steps exactly where contacts open or close; rk4 does so only if this is true
+    force          run even if a fixed step is known to be too large
     """
 
     type: ClassVar[str] = "solver"
@@ -213,31 +214,34 @@ class Scenario(Spec):
     """A mechanism and a load case, checked and in SI units; nothing changes it any more.
 
     title            a line for figures and tables
-    planar           whether the motion stays in the x-y plane; found out unless given
-    gravity          acceleration of a free fall, world axes
-    frame            in which all places, directions and velocities are given: the world's unless
-                     given
+    planar           whether the motion stays in the x-y plane; detected unless given
+    gravity          acceleration due to gravity, world axes
+    frame            axes in which all positions, directions and velocities are given; the world
+                     axes unless given
     parameters       named numbers that every number may use: `velocity: 2*speed`
-    points           places on bodies or on the ground that others name, with their motion recorded
-    bodies           what has mass
+    points           named points on bodies or on the ground, which other entries may use; their
+                     motion is recorded
+    bodies           rigid bodies and flexible bars
     joints           what holds bodies together
     drives           prescribed motion of joints
-    sensors          angles and strokes with a name, for loads, expressions and plots
+    sensors          named measurements, such as angles and strokes, for loads, expressions and
+                     plots
     forces           what acts on bodies
-    contact_laws     laws of contacts, by name
-    initial          how the mechanism starts, where that is not as drawn with the drives at speed
+    contact_laws     named contact laws
+    initial          how the mechanism starts, if not as drawn with the drives at their speeds
     solver           how, how far and how exactly the motion is integrated
     output           what is recorded, and how often
     phase_portraits  one channel against another
-    poincare         two channels where the motion passes a surface: crossings, a period, touches
-    events           what happens where a sensor, or the time, crosses a value
-    templates        parts of the mechanism described once, put in place by instances
+    poincare         two channels, plotted each time the motion crosses a surface: zero crossings, a
+                     period, touches
+    events           what happens when a sensor or the time crosses a value
+    templates        parts of the mechanism that are described once; instances put them in place
     instances        templates put in place; entry `door` of instance `left` is left_door
     load_sets        loads that act together, with factors of limit and ultimate load
     loads            which load sets act: `{gust: ultimate}`, limit, ultimate or a factor
-    totals           what several bodies weigh together, where one of them takes the rest
-    sizing           a load that takes over what a drive gives, found by repeated runs
-    limits           how many bodies, rows, nodes and entries there may be
+    totals           total mass of several bodies; one of them takes the rest
+    sizing           a load that replaces the force of a drive, found by repeated runs
+    limits           the largest numbers of bodies, rows, nodes and entries
     phases           load steps in order: what each one drives, locks and releases, and what
                      ends it
     cases            named overrides, each a scenario of a sweep; not used by `run`

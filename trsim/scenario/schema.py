@@ -26,12 +26,12 @@ INITIAL = {
     "type": "object",
     "properties": {
         "equilibrium": {
-            "description": "joints that are free in the balance of forces, or `all`",
+            "description": "joints that are free to move until the forces balance, or `all`",
             "anyOf": [{"enum": [ALL]}, {"type": "array", "items": {"type": "string"}}],
         }
     },
     "additionalProperties": {
-        "description": "coordinate of the joint (rad or m); of JOINT.rate its rate (rad/s or m/s)",
+        "description": "coordinate of the joint (rad or m); for JOINT.rate its rate (rad/s or m/s)",
         **NUMBER,
     },
 }

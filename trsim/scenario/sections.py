@@ -15,8 +15,8 @@ SURFACES = ("when", "every", "at_onset")
 class PhasePortrait(Spec):
     """One channel against another.
 
-    x  channel to the right
-    y  channel upwards
+    x  channel on the horizontal axis
+    y  channel on the vertical axis
     """
 
     type: ClassVar[str] = "phase_portrait"
@@ -30,12 +30,13 @@ class PoincareSection(Spec):
     The surface is one of three: a channel that crosses zero, `when`; instants a period apart,
     `every`; or the touches of a contact, `at_onset`.
 
-    when      channel that crosses zero; where it jumps over zero there is no point
+    when      channel that crosses zero; a jump across zero gives no point
     crosses   the direction that counts
     every     period of a stroboscopic section: points at the times after + k every, k = 0, 1, 2 ...
-    at_onset  clearance joint or stop: a point each time it touches, as it is just before the touch
-    after     time before which there are no points, to leave out what dies away
-    plot      channels to the right and upwards
+    at_onset  clearance joint or stop: a point each time it touches, with the values just before the
+              touch
+    after     time before which no points are taken, to leave out transients
+    plot      channels on the horizontal and the vertical axis
     """
 
     type: ClassVar[str] = "poincare_section"

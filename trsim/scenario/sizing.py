@@ -12,7 +12,7 @@ class Sizing(Spec):
 
     drive   the drive whose force the load replaces
     load    the key to find, such as forces.hand.force; it becomes a table
-    of      the sensor of this table; it must rise or fall throughout the motion
+    of      sensor on which the table depends; it must rise or fall throughout the motion
     below   the force left in the drive, relative to its largest force without the load
     passes  the largest number of passes
     """

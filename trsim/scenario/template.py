@@ -28,8 +28,9 @@ def _later(value: Any, _: Any) -> Any:
 class Placement(Placed):
     """Where an instance, or all that a scenario describes, stands.
 
-    angle  by which these axes are turned
-    about  the direction about which they are turned, seen like `x_axis`; the z axis unless given
+    angle  angle by which these axes are rotated
+    about  direction about which they are rotated, given in the same axes as `x_axis`; the z axis
+           unless given
     """
 
     type: ClassVar[str] = "placement"
@@ -78,15 +79,15 @@ def rotated(v: Any, n: Any, angle: float) -> tuple[float, float, float]:
 class Template(Spec):
     """A part of a mechanism.  Its names mean its own entries; all others those of the scenario.
 
-    parameters  numbers an instance may change, with what they are otherwise
-    frame       where an instance stands that says nothing else
-    points      places on bodies or on the ground that others name
-    bodies      what has mass
+    parameters  numbers that an instance may change, with their default values
+    frame       position and axes of an instance that gives none
+    points      named points on bodies or on the ground, which other entries may use
+    bodies      rigid bodies and flexible bars
     joints      what holds bodies together
     drives      prescribed motion of joints
-    sensors     joint coordinates with a name
+    sensors     named measurements, such as angles and strokes
     forces      what acts on bodies
-    events      what happens where a sensor, or the time, crosses a value
+    events      what happens when a sensor or the time crosses a value
     """
 
     type: ClassVar[str] = "template"
@@ -113,16 +114,17 @@ class Template(Spec):
 class Instance(Spec):
     """A template put in a place.  Its entry `door` is INSTANCE_door in the scenario.
 
-    template    which
-    frame       where: its points and directions are seen from there; the world's unless given
+    template    name of the template
+    frame       position and axes of the instance: the points and directions of the template are
+                given in this frame; the world frame unless given
     parameters  values of the template's parameters
-    bodies      keys of bodies that differ in this instance; null leaves a body out
-    points      the same of points
-    joints      the same of joints
-    drives      the same of drives
-    sensors     the same of sensors
-    forces      the same of forces
-    events      the same of events
+    bodies      keys of bodies that differ in this instance; null removes a body
+    points      the same for points
+    joints      the same for joints
+    drives      the same for drives
+    sensors     the same for sensors
+    forces      the same for forces
+    events      the same for events
     """
 
     type: ClassVar[str] = "instance"

@@ -11,12 +11,13 @@ from trsim.fields import Spec, Unit, point
 class Total(Spec):
     """Mass, centre and inertia of several bodies together.
 
-    bodies     the bodies, including the remainder; all unless given
-    mass       of all these bodies
-    at         their common centre of mass, as drawn; unless given the remainder keeps its position
-    inertia    of all these bodies about this centre, along the axes of the drawing: one about z,
-               three without products or Ixx, Iyy, Izz, Ixy, Ixz, Iyz; unless given the remainder
-               keeps its own
+    bodies     the bodies, including the remainder; all bodies unless given
+    mass       total mass of these bodies
+    at         common centre of mass of these bodies, as drawn; unless given, the remainder keeps
+               its position
+    inertia    total inertia of these bodies about this centre, along the axes of the drawing: one
+               about z, three without products, or Ixx, Iyy, Izz, Ixy, Ixz, Iyz; unless given, the
+               remainder keeps its own
     remainder  the body whose own numbers are replaced, so that the total is right
     """
 
