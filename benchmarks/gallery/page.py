@@ -12,10 +12,10 @@ TOP = """\
 # Gallery
 
 Each of these comes with trsim. `trsim init NAME` writes the file that is shown here into the
-current folder, and says what to type next. Its first line says what to expect, and a test holds
-it to that: by a closed form, or by an integration of its own. A picture shows the mechanism as
-`trsim report --animate` draws it, pale at other moments, and the first plot of the file.
-`python -m benchmarks.gallery` makes pictures and page again.
+current folder, and prints what to type next. The first line of the file says what to expect, and
+a test checks this by a closed form or by an independent integration. The picture shows the
+mechanism as `trsim report --animate` draws it, with other moments in pale colours, and the first
+plot of the file. `python -m benchmarks.gallery` renews the pictures and the page.
 
 {contents}
 

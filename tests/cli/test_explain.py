@@ -121,7 +121,7 @@ def test_meanings_of_docstrings():
         ("forces", ["applied_load", "limit_stop"]),
         ("points", ["marker"]),
         ("marker", ["p'' = r''", "body: text, required", "at: [x, y] or [x, y, z], m, req"]),
-        ("clearance", ["clearance_joint.clearance: number >= 0, m, required\n    radial;"]),
+        ("clearance", ["clearance_joint.clearance: number >= 0, m, required\n    radial c"]),
         ("at", ["applied_load.at", "limit_stop.wall.at", "revolute.at"]),
         ("wall.normal", ["wall.normal: [x, y] or [x, y, z] or axis of a point or these seen f"]),
         ("floor", ["floor(x)", "the largest whole number"]),
