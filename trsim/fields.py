@@ -145,7 +145,7 @@ class _VectorUnit(Unit):
             return numbers
         named = {"type": "string", "title": self.otherwise}
         seen = {
-            "type": "object", "title": "these seen from a point", "required": ["in", "at"],
+            "type": "object", "title": "these relative to a point", "required": ["in", "at"],
             "properties": {"in": {"type": "string"}, "at": numbers}, "additionalProperties": False,
         }  # fmt: skip
         return {"anyOf": [numbers, *([named] if self.by_name else ()), seen]}

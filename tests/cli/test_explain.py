@@ -123,7 +123,7 @@ def test_meanings_of_docstrings():
         ("marker", ["p'' = r''", "body: text, required", "at: [x, y] or [x, y, z], m, req"]),
         ("clearance", ["clearance_joint.clearance: number >= 0, m, required\n    radial c"]),
         ("at", ["applied_load.at", "limit_stop.wall.at", "revolute.at"]),
-        ("wall.normal", ["wall.normal: [x, y] or [x, y, z] or axis of a point or these seen f"]),
+        ("wall.normal", ["wall.normal: [x, y] or [x, y, z] or axis of a point or these rel"]),
         ("floor", ["floor(x)", "the largest whole number"]),
         ("interpolation", ["{table: [[x, y], ...], interpolation: ...}", "akima"]),
         ("havsin", ["havsin(x, x0, h0, x1, h1)"]),

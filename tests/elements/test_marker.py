@@ -417,9 +417,9 @@ def test_explain_knows_points():
     [page] = explained("marker")["elements"]
     assert [c["name"] for c in page["channels"]][:2] == ["NAME.position", "NAME.velocity"]
     [key] = explained("applied_load.at")["keys"]
-    assert key["type"] == "[x, y] or [x, y, z] or name of a point or these seen from a point"
+    assert key["type"] == "[x, y] or [x, y, z] or name of a point or these relative to a point"
     [key] = explained("revolute.axis")["keys"]
-    assert key["type"] == "[x, y] or [x, y, z] or axis of a point or these seen from a point"
+    assert key["type"] == "[x, y] or [x, y, z] or axis of a point or these relative to a point"
     json.dumps(explained("points"))
 
 

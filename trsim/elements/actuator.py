@@ -72,7 +72,7 @@ class Actuator(Spec):
     position   prescribed stroke, 0 as drawn; give either this or the velocity
     stiffness  stiffness between the piston and the second body, or of the whole actuator; rigid
                without it
-    damping    damping, in the same place
+    damping    damping, at the same point as the stiffness
     supply     spring and damper between the prescribed motion and the piston; for a piston that a
                shaft can move
     stall      largest force, of either sign, that its source can give (the supply, if there is

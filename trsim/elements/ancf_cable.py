@@ -175,7 +175,7 @@ def at_node(k):
     """What is recorded at every node; forces where two elements meet are their mean."""
     return (
         Channel(f"node{k}.position", "m", "position of the node, world axes", 3),
-        Channel(f"node{k}.axial_force", "N", "along the bar; tension is positive"),
+        Channel(f"node{k}.axial_force", "N", "axial force; tension is positive"),
         Channel(f"node{k}.bending_moment", "N*m", "magnitude"),
     )
 

@@ -266,7 +266,7 @@ ELEMENT = Element(
     judged=lambda row: Own.of(row).stiffness > 0.0 or Own.of(row).elastic >= 0,
     doubts=doubts,
     channels=(
-        Channel("moment", "N*m", "on the second body, world axes", 3),
+        Channel("moment", "N*m", "moment on the second body, world axes", 3),
         Channel(
             TURN,
             "rad",

@@ -64,10 +64,10 @@ class Bushing(Spec):
     at                    its position, as drawn; there its force is zero
     x_axis                x axis of the stiffnesses, as drawn; of any length
     y_axis                y axis of the stiffnesses, made perpendicular to x; z = x cross y
-    stiffness             along x, y, z; 0 lets the bodies slide
-    damping               along x, y, z
-    rotational_stiffness  about x, y, z
-    rotational_damping    about x, y, z
+    stiffness             stiffness along x, y, z; 0 lets the bodies slide
+    damping               damping along x, y, z
+    rotational_stiffness  rotational stiffness about x, y, z
+    rotational_damping    rotational damping about x, y, z
     """
 
     type: ClassVar[str] = "bushing"
@@ -244,7 +244,7 @@ ELEMENT = Element(
     springs=springs,
     channels=(
         Channel("force", "N", "force on the second body at its point, world axes", 3),
-        Channel("moment", "N*m", "on the second body, world axes", 3),
+        Channel("moment", "N*m", "moment on the second body, world axes", 3),
         Channel(
             "displacement",
             "m",

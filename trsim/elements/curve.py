@@ -120,7 +120,7 @@ Column2 = Annotated[str, Field(min_length=1)]
 class Curve(Placed):
     """A plane curve of a body: through points, or by expressions.
 
-    at        origin of its coordinates, as drawn; a place, or the name of a point
+    at        origin of its coordinates, as drawn: a position, or the name of a point
     x_axis    direction of its x axis, as drawn
     y_axis    direction of its y axis, made perpendicular to x
     points    points [x, y] it passes through, in its own coordinates

@@ -38,7 +38,7 @@ class Surface(Placed):
     body           the body, or ground
     shape          plane: through `at`, free on the side of its y axis; sphere: around `at`;
                    cylinder: around the z axis; profile: a line in the x-y plane, extruded along z
-    at             its origin, as drawn; a place, or the name of a point
+    at             its origin, as drawn: a position, or the name of a point
     x_axis         direction of its x axis, as drawn
     y_axis         direction of its y axis, made perpendicular to x
     radius         radius of a sphere or a cylinder
@@ -88,7 +88,7 @@ class Ball(Spec):
     outline with a round edge.
 
     body     the body
-    at       its centre, as drawn; a place, or the name of a point
+    at       its centre, as drawn: a position, or the name of a point
     radius   radius; 0 for a point; for an outline, the radius of its rounded edge
     corners  corners of an outline, in order: the centres [x, y] of its rounded corners, measured
              from `at` along the axes of the surface, as drawn; two corners make a straight face

@@ -141,8 +141,8 @@ class Event(Spec):
     when     a sensor or t; or any other channel, whose crossings are found by sampling
     value    the value to cross
     crosses  the direction of crossing
-    times    how often it can happen; no limit unless given
-    do       what happens
+    times    largest number of times it can happen; no limit unless given
+    do       the actions of the event
     """
 
     type: ClassVar[str] = "event"

@@ -132,7 +132,7 @@ class SolverSpec(Spec):
     step           size of the steps of rk4
     tolerance      approximate error of a smooth motion at the end of a run, relative to the size of
                    clearances or of bodies; the error of one step is kept smaller
-    stabilisation  how joints are kept closed
+    stabilisation  method that keeps the joints closed
     baumgarte      rates of Baumgarte's stabilisation
     first_step     size of the first step; chosen by trsim unless given
     max_step       largest step; give it if a smooth load or motion is shorter than a 200th of the
