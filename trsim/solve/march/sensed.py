@@ -73,6 +73,9 @@ LAST, TIMES, FAR = range(3)  # of r.chatter
 AHEAD = 1e-3  # of the next step: how far u is looked at behind a corner
 HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
 JUMPS = 0.5  # of the difference between two pieces ahead of a corner: as much at the corner itself
+SMALL = (
+    1e5  # errors allowed, by which a jump changes a rate in the rest of a run; a step makes some
+)
 OFTEN = 20  # corners met in a row within the error allowed: it is no longer located
 
 TURN = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, i8)
@@ -301,7 +304,7 @@ def turn(s, r, b, setting, method, changed):
                 before = s.tab[int(b.met[n, PLACE])]
                 s.tab[int(b.met[n, PLACE])] = b.met[n, NEXT]
                 if often(s, r, b, setting, n, t1):
-                    leave(s, r, b, n, t1, before)
+                    leave(s, r, b, setting, n, before)
                 turned += 1
     if turned > 0 or changed > 0:
         for n in range(s.feature.shape[0]):
@@ -442,21 +445,25 @@ def turn_back(s, beyond):
 
 
 @internal
-def leave(s, r, b, n, t1, before):
+def leave(s, r, b, setting, n, before):
     """Leave a corner free; where the function jumps there and drives u back from both sides, no
     motion goes on from it.
 
     before: the piece that ended there.  By what both pieces do to the acceleration of u differs at
-    a jump as much at the corner as ahead of it, at a kink next to nothing.
+    a jump as much at the corner as ahead of it, at a kink next to nothing.  Steps of what is left
+    free are as long as the jump changes the rate of u by some errors allowed.  Of a SMALL jump, as
+    of two pieces whose numbers are rounded, they are few, and what holds it there is told to that.
     """
-    place, ahead = int(b.met[n, PLACE]), AHEAD * r.h
+    place, t1, ahead = int(b.met[n, PLACE]), b.t1, AHEAD * r.h
     way = corner_at(s, n, place, t1)[1]
     one = bend_on(s, r, b, n, place, (before, t1, 0.0, ahead))
     other = bend_on(s, r, b, n, place, (b.met[n, NEXT], t1, 0.0, ahead))
     if one * way > 0.0 > other * way:
         far = bend_on(s, r, b, n, place, (before, t1, ahead, ahead))
         far -= bend_on(s, r, b, n, place, (b.met[n, NEXT], t1, ahead, ahead))
-        if abs(one - other) > JUMPS * abs(far):
+        change = abs(one - other) * (setting.t_end - t1)
+        matters = change > SMALL * r.chatter[n, FAR] * r.speed / r.length
+        if matters and abs(one - other) > JUMPS * abs(far):
             r.slid = -1 - s.feature[n, OFFSET]
     s.tab[place] = FREE
     set_poses(s, r.y)
