@@ -487,7 +487,7 @@ def test_as_written():
         ({**DRAWN, "until": {}}, ("until",), "says of no number"),
         ({**DRAWN, "until": ["peak:x"]}, ("until",), "must be a mapping of numbers"),
         ({**DRAWN, "until": {"peak:x": "tight"}}, ("until", "peak:x"), "a share or a number"),
-        ({**DRAWN, "until": {"peak:x": "-2 %"}}, ("until", "peak:x"), "a share or a number"),
+        ({**DRAWN, "until": {"peak:x": "-2 %"}}, ("until", "peak:x"), "larger than 0"),
         ({**DRAWN, "until": {"peak:x": True}}, ("until", "peak:x"), "a share or a number"),
         ({**DRAWN, "until": {"peak:x": "2 M"}}, ("until", "peak:x"), "unit"),
         ({**DRAWN, "method": "sobol", "until": {"peak:x": "2 N"}}, ("until", "peak:x"), "a share"),

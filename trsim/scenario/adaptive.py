@@ -151,5 +151,6 @@ def _width(word: str, value: Any) -> Width:
     else:
         raise wrong
     if not 0.0 < width.value < math.inf:
-        raise wrong
+        what = f"must be larger than 0, got {width.text}"
+        raise ScenarioError(what, "Write how far off it may be, for example `2 %`.", (word,))
     return width

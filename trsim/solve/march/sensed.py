@@ -73,9 +73,7 @@ LAST, TIMES, FAR = range(3)  # of r.chatter
 AHEAD = 1e-3  # of the next step: how far u is looked at behind a corner
 HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
 JUMPS = 0.5  # of the difference between two pieces ahead of a corner: as much at the corner itself
-SMALL = (
-    1e5  # errors allowed, by which a jump changes a rate in the rest of a run; a step makes some
-)
+SMALL = 1e4  # errors allowed, by which a jump changes a rate in the rest of a run
 OFTEN = 20  # corners met in a row within the error allowed: it is no longer located
 
 TURN = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, i8)
