@@ -448,9 +448,8 @@ def leave(s, r, b, setting, n, before):
     motion goes on from it.
 
     before: the piece that ended there.  By what both pieces do to the acceleration of u differs at
-    a jump as much at the corner as ahead of it, at a kink next to nothing.  Steps of what is left
-    free are as long as the jump changes the rate of u by some errors allowed.  Of a SMALL jump, as
-    of two pieces whose numbers are rounded, they are few, and what holds it there is told to that.
+    a jump as much at the corner as ahead of it, at a kink next to nothing.  A SMALL jump, as of
+    two pieces whose numbers are rounded, is passed in few steps, and holds by next to nothing.
     """
     place, t1, ahead = int(b.met[n, PLACE]), b.t1, AHEAD * r.h
     way = corner_at(s, n, place, t1)[1]
