@@ -58,7 +58,8 @@ def test_a_force_that_is_chance_is_that_of_places_around_it():
 
     alone = piece(
         measure_in, either_step=lambda *_: (None, None, start), measure_at=measure_at,
-        firmness=lambda s: 1.0, smallest_pivot=lambda s: 0.0 if s.theta == 0.5 else 1.0,
+        firmness_of_extremes=lambda s: 1.0,
+        smallest_pivot=lambda s: 0.0 if s.theta == 0.5 else 1.0,
         firmness_of_all=lambda s, pivot: pivot,
     )  # fmt: skip
     at = start + 0.5 * h
@@ -278,7 +279,7 @@ def test_a_touch_that_was_accepted_is_known_to_the_norm():
     """The deepest one met so far, of what is in touch."""
     s = SimpleNamespace(
         status=np.zeros(5, int), contact=np.array([0, 1]), wanted=np.array([-1, -1]),
-        column_energy=-1,
+        column_energy=-1, near_rows=0.0,
     )  # fmt: skip
     r = SimpleNamespace(
         t=0.0, y=np.zeros(1), yd=np.zeros(1), gap=np.zeros((2, 2)), corner=np.zeros(2),

@@ -16,7 +16,7 @@ from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
-from trsim.solve.diagnose.blame import RESTS
+from trsim.solve.diagnose.blame import RESTS, on_a_jump
 from trsim.solve.diagnose.poles import at_pole
 from trsim.solve.march import record as rec
 from trsim.solve.march.impulses import Jump, no_jump
@@ -359,7 +359,7 @@ def untrue(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     if r.torn:
         return leapt(mechanism, r)
     if r.slid:
-        return slid(mechanism, r)
+        return (on_a_jump(scenario, mechanism, r.y) if r.slid < 0 else "") or slid(mechanism, r)
     if r.pole:
         return at_pole(scenario, mechanism, int(r.pole) - 1, float(r.pole_t))
     if r.opened:

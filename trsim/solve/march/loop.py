@@ -92,6 +92,7 @@ from trsim.solve.march.stiffness import (
     look_stiff,
     smooth,
     stiffness_due,
+    still,
 )
 from trsim.solve.march.turns import BRIEF, before_pulses, longest_turn, pulse
 from trsim.solve.march.watch import take_sides
@@ -162,7 +163,7 @@ def march(s, r, b, setting, methods, most):
         t, method = r.t, methods[r.method]
         if method[STEP_AT] == 0:
             return LOAD
-        if s.n_v == s.m:  # nothing moves but rounding: what was stiff before is held
+        if still(s, r):  # what was stiff before is held
             r.vibration = 0.0
         elif method[STIFF_AT] > 0 and stiffness_due(r) and smooth(s, r):
             call_look_stiff(method[STIFF_AT], s, r, b)

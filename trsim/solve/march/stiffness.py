@@ -41,12 +41,25 @@ FINEST = 1e-12  # of a place: smaller changes of it are lost in its last bits
 DEEP = 1e-3  # of the unit of lengths
 GOLDEN = 0.6180339887498949
 NOTHING = 1e-300  # nothing holds anything
+STILL = 1e-9  # of the largest speed: no motion
 # the longest steps of an explicit method in which what is stiff dies out, w h and c h.  DOP853 is
 # stable to 6.0 and 6.1; it leaves 0.7 of a vibration there, and of a decay its estimate sees all
 SWINGING, DYING = 5.5, 3.5
 
 LOOK_STIFF = types.void(SCENE, RECORD, BUFFERS)
 call_look_stiff = caller(LOOK_STIFF)
+
+
+@internal
+def still(s, r):
+    """Whether rows hold all there is, and nothing moves but roundings.
+
+    Rows may hold all at a place that the motion goes through, as those of cranks in line do.
+    """
+    fastest = 0.0
+    for c in range(s.n_q, s.n_q + s.n_v):
+        fastest = max(fastest, abs(r.y[c]))
+    return s.n_v == s.m and fastest <= STILL * r.top_speed
 
 
 @internal

@@ -23,7 +23,7 @@ from trsim.solve.march.record import (
     TO_IMPLICIT,
     note_event,
 )
-from trsim.solve.march.stiffness import stiff_load, stiffest
+from trsim.solve.march.stiffness import stiff_load, stiffest, still
 from trsim.solve.methods.displacements import active
 from trsim.solve.methods.dop853 import FROM_LAST_STAGE, combined
 
@@ -114,14 +114,14 @@ def change(s, r, b, method, load, rate):
 def explicit_rate(s, r, b, h):
     """rho, 1/s: how much the derivative changes with the state, in the units of the error.
 
-    0 where what changes is SEEN by no tolerance, and of bodies that rows hold altogether: at rest a
-    quotient of two roundings.
+    0 where what changes is SEEN by no tolerance, and of bodies that rows hold at rest, where it
+    would be a quotient of two roundings.
     """
     K, weight, away = b.K, b.weight, b.y2
     # r.y is the end of the step by now: the difference to the last stage is in K alone
     combined(K, FROM_LAST_STAGE, 0, away.size, away)
     top = bottom = 0.0
-    first = s.n_q + s.n_v if s.m == s.n_v else 0
+    first = s.n_q + s.n_v if still(s, r) else 0
     for c in range(first, away.size):
         if weight[c] > 0.0:
             top += ((K[12, c] - K[11, c]) * weight[c]) ** 2
