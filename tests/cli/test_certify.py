@@ -49,12 +49,17 @@ def whole(tmp_path_factory):
     return alone(folder), folder / "runs/crank.h5"
 
 
+def bring(file, scenario):
+    """Have a file where a run of the scenario is written to."""
+    (scenario.parent / "runs").mkdir()
+    shutil.copy(file, scenario.parent / "runs")
+
+
 @pytest.fixture
 def done(whole, scenario):
     """What is told of that run, with its file where a run of the scenario is written to."""
     told, file = whole
-    (scenario.parent / "runs").mkdir()
-    shutil.copy(file, scenario.parent / "runs")
+    bring(file, scenario)
     return told
 
 
@@ -70,8 +75,7 @@ def parting(tmp_path_factory):
 def chaotic(parting, scenario):
     """The same, with its file where a run of the scenario is written to."""
     told, file = parting
-    (scenario.parent / "runs").mkdir()
-    shutil.copy(file, scenario.parent / "runs")
+    bring(file, scenario)
     return told
 
 

@@ -111,8 +111,7 @@ class Own(Along):
 
 
 STICKING = CODES["sticking"]
-SEVERAL = (
-    Channel("force", "N", "friction along the surfaces, negative: against the sliding"),
+PRESSED = (
     Channel(
         "normal_force",
         "N",
@@ -124,6 +123,10 @@ SEVERAL = (
         "m/s",
         "sliding speed of the second body relative to the first, where they rub",
     ),
+)
+SEVERAL = (
+    Channel("force", "N", "friction along the surfaces, negative: against the sliding"),
+    *PRESSED,
 )
 BALL = (*SEVERAL, Channel("moment", "N*m", "friction on the second body, world axes", 3))
 
@@ -339,17 +342,7 @@ ELEMENT = Element(
     reach=lambda row: Reach(),  # acts along a coordinate, whose joint says where that leads
     channels=(
         Channel("force", "drive", "friction on the second body, along the coordinate"),
-        Channel(
-            "normal_force",
-            "N",
-            "normal force with which the reaction presses the surfaces together",
-            least=0.0,
-        ),
-        Channel(
-            "sliding_speed",
-            "m/s",
-            "sliding speed of the second body relative to the first, where they rub",
-        ),
+        *PRESSED,
     ),
     loads={"force": "force"},
     slides=(Own.columns["law"].at, Own.columns["friction"].at),
