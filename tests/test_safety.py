@@ -13,7 +13,7 @@ from trsim.cli import main
 
 from . import small
 from .store.outside import ROOT, warm
-from .watching import NETWORK, PROCESSES, watched
+from .watching import NETWORK, PROCESSES, Watch, apart
 
 CALLS = {"eval", "exec", "compile", "__import__", "breakpoint"}
 MODULES = {"pickle", "cPickle", "marshal", "shelve", "dill", "joblib", "socket", "ssl", "urllib",
@@ -78,18 +78,29 @@ def test_a_run_reaches_nothing(tmp_path, monkeypatch):
         ("export", "runs/crank.h5", "--csv"),
     ]
     warm()  # a first run compiles in a second process
-    with watched(*NETWORK, *PROCESSES) as seen:
-        for words in commands:
-            with pytest.raises(SystemExit) as ended:
-                main(list(words))
-            assert ended.value.code == 0
+
+    def typed():
+        codes = []
+        with Watch((*NETWORK, *PROCESSES)) as seen:
+            for words in commands:
+                with pytest.raises(SystemExit) as ended:
+                    main(list(words))
+                codes.append(ended.value.code)
+        return seen, codes
+
+    seen, codes = apart(typed)
     assert seen == []
+    assert codes == [0] * len(commands)
 
 
 def test_it_would_be_seen():
-    with watched(*NETWORK, *PROCESSES) as seen:
-        socket.socket().close()
-        subprocess.run([sys.executable, "-c", ""], check=True)
+    def reaching():
+        with Watch((*NETWORK, *PROCESSES)) as seen:
+            socket.socket().close()
+            subprocess.run([sys.executable, "-c", ""], check=True)
+        return seen
+
+    seen = apart(reaching)
     assert seen[0].startswith("socket.")
     assert any(event.startswith("subprocess.Popen") for event in seen)
 

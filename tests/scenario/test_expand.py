@@ -22,7 +22,7 @@ from trsim.scenario.load import load
 from trsim.scenario.text import read
 from trsim.sweeps.plan import plan
 
-from ..watching import watched
+from ..watching import Watch, apart
 
 
 def files(folder, **texts):
@@ -127,7 +127,7 @@ def test_traversal(secret):
     (secret / "folder.yaml").mkdir()
     (secret / "round.yaml").symlink_to("round.yaml")
     files(secret, mechanism="title: x")
-    for name, what in {
+    refused = {
         "../secret.yaml": "lies outside project/",
         "sub/secret.yaml": "lies outside project/",
         "../project/../secret.yaml": "lies outside project/",
@@ -143,13 +143,21 @@ def test_traversal(secret):
         "secret.txt": "does not end in .yaml or .yml",
         "MECHANISM.yaml": "there is no file 'MECHANISM.yaml'",
         "mechanism.yaml/x.yaml": "there is no file",
-    }.items():
-        files(secret, top=f'extends: "{name}"')
-        with watched("open") as opened:
-            error = refusal("top.yaml")
+    }
+
+    def read():
+        told = []
+        for name in refused:
+            files(secret, top=f'extends: "{name}"')
+            with Watch(("open",)) as opened:
+                error = refusal("top.yaml")
+            told.append((list(opened), error.what, error.show()))
+        return told
+
+    for what, (opened, told, shown) in zip(refused.values(), apart(read), strict=True):
         assert len(opened) == 1 and "top.yaml" in opened[0]
-        assert what in error.what
-        assert error.show().startswith("top.yaml:1:10: extends: ")
+        assert what in told
+        assert shown.startswith("top.yaml:1:10: extends: ")
     files(secret, top="extends: mechanisn.yaml")
     assert refusal("top.yaml").hint.startswith("Did you mean 'mechanism.yaml'?")
 
