@@ -176,7 +176,13 @@ def structure(
 
 def no_pattern(m: int, n: int) -> dict[str, Any]:
     """The pattern of a model whose equations nobody solves: only its m rows are looked at."""
-    return {**pattern([], n), "column_start": np.zeros(m + 1, np.int64)}
+    none = np.zeros(0, np.int64)
+    return {
+        "frame_start": np.zeros(n + 1, np.int64),
+        "hub": np.full(n, -1, np.int64),
+        "column_start": np.zeros(m + 1, np.int64),
+        **dict.fromkeys(("slot_row", "slot_line", "entry", "row", "target"), none),
+    }
 
 
 def pattern(

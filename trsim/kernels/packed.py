@@ -16,6 +16,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
+from ctypes import addressof, c_char
 from functools import cache
 from operator import setitem
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -71,6 +72,7 @@ __all__ = [
 
 WORDS = 3  # per field
 LINE = 8  # words: where one array ends and the next begins, there is a new line of the cache
+_at = (c_char * 0).from_buffer  # of no length; refused unless contiguous and writable
 HOLDERS = {"F8": "clock", "I8": "count"}  # the arrays of numbers that change
 
 
@@ -145,9 +147,10 @@ class Packed:
         for (name, shape), size, begin in zip(room.items(), sizes, ends, strict=False):
             field = fields[name]
             _check(field, shape)
-            part = piece[begin : begin + size]
-            own[name] = part if field.dimensions == 1 else part.reshape(shape)
-            words[field.word : field.word + 1 + len(shape)] = (start + 8 * begin, *shape)
+            part, word = piece[begin : begin + size], field.word
+            own[name] = part if len(shape) == 1 else part.reshape(shape)
+            words[word] = start + 8 * begin
+            words[word + 1 : word + 1 + len(shape)] = shape
 
     def _take(self, values: dict[str, Any], words: list[int]) -> None:
         """Fields that are given."""
@@ -159,11 +162,17 @@ class Packed:
             field = fields[name]
             word = field.word
             if field.dimensions:
-                if not _fits(value, field):
+                try:  # as nearly all are what compiled code can work on
+                    start = addressof(_at(value)) if value.dtype is field.dtype else 0
+                except (AttributeError, TypeError):
+                    start = 0
+                if not start:
                     value = np.require(value, field.dtype, ["C", "W"])
+                    start = address(value)
                 shape = value.shape
                 _check(field, shape)
-                words[word : word + 1 + len(shape)] = (address(value), *shape)
+                words[word] = start
+                words[word + 1 : word + 1 + len(shape)] = shape
             elif field.real:
                 number = np.float64(value)
                 words[word] = int(number.view(np.int64))
@@ -213,15 +222,12 @@ def _fields(record: Any) -> dict[str, _Field]:
 
 def _check(field: _Field, shape: tuple[int, ...]) -> None:
     """Raise TypeError where an array is not as compiled code takes it to be."""
+    _, _, dimensions, _, _, columns, number = field
+    if len(shape) == dimensions and not number and (not columns or shape[1] == columns):
+        return
     if len(shape) != field.dimensions:
         raise TypeError(f"{field.name}: {len(shape)} dimensions instead of {field.dimensions}")
     if field.number and shape[0] != field.number:
         raise TypeError(f"{field.name}: {shape[0]} numbers instead of {field.number}")
     if field.columns and shape[1] != field.columns:
         raise TypeError(f"{field.name}: {shape[1]} columns instead of {field.columns}")
-
-
-def _fits(value: Any, field: _Field) -> bool:
-    """Whether compiled code can work on an array as it is."""
-    flags = getattr(value, "flags", None)
-    return flags is not None and value.dtype == field.dtype and flags.carray
