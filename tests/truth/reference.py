@@ -30,6 +30,7 @@ from .scene import (
     Wall,
     plus,
 )
+from .vectors import crossed
 
 RATE, ACCELERATION, TURNING = (0, 0, -1), (1, 0, -2), (0, 0, -2)
 ENERGY = (2, 1, -2)
@@ -61,10 +62,15 @@ class Stage:
 
 def basis(a: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A unit vector and two across it."""
-    a = np.asarray(a, float) / np.linalg.norm(a)
-    u = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
+    a = unit(a)
+    u = crossed(a, np.eye(3)[np.argmin(np.abs(a))])
     u /= np.linalg.norm(u)
-    return a, u, np.cross(a, u)
+    return a, u, crossed(a, u)
+
+
+def unit(a: Any) -> np.ndarray:
+    a = np.asarray(a, float)
+    return a / np.linalg.norm(a)
 
 
 class Builder:
@@ -85,6 +91,7 @@ class Builder:
         self.coordinates: list[tuple[list[int], list[float]]] = []
         self.coordinate: dict[str, int] = {}
         self.bristles: list[float] = []  # how far each bends at most
+        self.reach: dict[str, set[str]] = {}
         for joint in scene.joints:
             self.add_coordinate(joint)
         for joint in scene.joints:
@@ -219,6 +226,16 @@ class Builder:
         elif not self.gone(drive.joint or ""):
             row = e.ALONG if kind == e.SLIDE else e.ANGLE
             self.row(drive.name, row, i, j, k, (*par[:9], offset), g)
+
+    def beyond(self, joint: str) -> set[str]:
+        """The bodies that go along where a joint of an open chain is moved."""
+        if joint not in self.reach:
+            found, grown = {self.s.joint(joint).j}, True
+            while grown:
+                more = {x.j for x in self.s.joints if x.i in found and x.name != joint} - found
+                found, grown = found | more, bool(more)
+            self.reach[joint] = found
+        return self.reach[joint]
 
     def gone(self, joint: str) -> bool:
         """Whether a joint has no coordinate to hold: a hinge in space that is apart."""
@@ -370,16 +387,12 @@ def start_state(b: Builder) -> np.ndarray:
 def moved(b: Builder, y: np.ndarray, name: str, value: float) -> None:
     """Bring a joint of an open chain to a value: all beyond it goes along."""
     joint = b.s.joint(name)
-    beyond, grown = {joint.j}, True
-    while grown:
-        more = {x.j for x in b.s.joints if x.i in beyond and x.name != name} - beyond
-        beyond, grown = beyond | more, bool(more)
     i = b.number[joint.i]
     R = e.rotations(y, len(b.centre))
     at = np.asarray(joint.at, float)
     origin = (y[13 * (i - 1) : 13 * (i - 1) + 3] + R[i] @ (at - b.centre[i])) if i else at
-    a = R[i] @ basis(joint.axis)[0]
-    for body in beyond:
+    a = R[i] @ unit(joint.axis)
+    for body in b.beyond(name):
         c = 13 * (b.number[body] - 1)
         if joint.slides:
             y[c : c + 3] += value * a
@@ -390,7 +403,7 @@ def moved(b: Builder, y: np.ndarray, name: str, value: float) -> None:
         y[c : c + 3] = origin + T @ (y[c : c + 3] - origin)
         p = y[c + 3 : c + 7].copy()
         y[c + 3] = q[0] * p[0] - q[1:] @ p[1:]
-        y[c + 4 : c + 7] = q[0] * p[1:] + p[0] * q[1:] + np.cross(q[1:], p[1:])
+        y[c + 4 : c + 7] = q[0] * p[1:] + p[0] * q[1:] + crossed(q[1:], p[1:])
 
 
 def independent(b: Builder, y: np.ndarray) -> list[int]:

@@ -17,6 +17,7 @@ from .grips import LAWS
 from .judge import CRASH, REFUSED, RIGHT, UNJUDGED, WRONG, Ran, Verdict
 from .reference import Builder, Channel, Unfit, moved, scales, size, start_state, told
 from .scene import Fn, Grip, Scene
+from .vectors import crossed
 
 BOUND, RUBBED = 1e-6, 3e-5  # of the scales; where what rubs slides in directions that turn
 PARTS = 5  # steps from row to row
@@ -76,7 +77,7 @@ class Balance:
                 y[c + 7 : c + 10] = CREEP * (one[c : c + 3] - other[c : c + 3]) / (2 * h)
                 p, d = y[c + 3 : c + 7], (one[c + 3 : c + 7] - other[c + 3 : c + 7]) / (2 * h)
                 y[c + 10 : c + 13] = (
-                    2 * CREEP * (p[0] * d[1:] - d[0] * p[1:] + np.cross(p[1:], d[1:])) * [1, 1, 1]
+                    2 * CREEP * (p[0] * d[1:] - d[0] * p[1:] + crossed(p[1:], d[1:])) * [1, 1, 1]
                 )
         return y
 
