@@ -756,13 +756,15 @@ def test_newton_feels_how_friction_goes_with_multipliers():
     assert many[1] < 1.1 * many[0]
 
 
-def test_a_lock_and_a_release():
-    """What a lock holds rubs no more, and a joint that is apart has neither load nor seal."""
+@pytest.mark.parametrize("unlocked", ["", "unlock: [slide], "])
+def test_a_lock_and_a_release(unlocked):
+    """What a lock holds rubs no more, and a joint that is apart has neither load nor seal; nor has
+    it anything to lock."""
     hold = """
 events:
   hold: {when: t, value: 0.1, do: {lock: [slide]}}
-  free: {when: t, value: 0.2, do: {unlock: [slide], release: [slide]}}
-"""
+  free: {when: t, value: 0.2, do: {UNLOCKED release: [slide]}}
+""".replace("UNLOCKED ", unlocked)
     r = run(block(3.0, 0.2, ", constant: 3 N", end=0.4) + hold)
     held, free = (r.t > 0.1) & (r.t < 0.2), r.t > 0.2
     assert r["rub.force"][held] == pytest.approx(0, abs=1e-9)

@@ -176,6 +176,7 @@ def test_names_differ(planned):
         ("sweep: {joints.C.clearance: [1 mm]}", "nothing named 'C' in joints"),
         ("sweep: {joints.B.clearance: []}", "an empty list"),
         ("sweep: {joints.B.clearance: 3}", "no values to vary: 3"),
+        ("sweep: {vary: {joints.B.clearance: [1 mm]}}", "no values to vary: a mapping"),
         ("sweep: {joints.B.clearance: 'lin(1 mm, 2 mm)'}", "lin(a, b, n) has 3 entries, got 2"),
         ("sweep: {joints.B.clearance: 'lin(1 mm, 2 kg, 3)'}", "are not of one kind"),
         ("sweep: {joints.B.clearance: 'lin(1, 2 mm, 3)'}", "need the same unit"),

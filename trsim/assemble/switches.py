@@ -22,7 +22,7 @@ from trsim.assemble.addresses import UNITS, Addresses
 from trsim.assemble.hanging import hanging
 from trsim.assemble.instances import Instance
 from trsim.assemble.outputs import energy_columns
-from trsim.elements.coordinates import called, named
+from trsim.elements.coordinates import called, named, of_joint
 from trsim.elements.prescribed import AnyDrive
 from trsim.elements.rows import ARC
 from trsim.elements.scene import COMPONENTS
@@ -251,7 +251,7 @@ class _Packing:
         if leads in self.begun:
             return self.begun[leads]
         turned = [self.motion(name, drive, motion) for drive, motion in spec.do.set.items()]
-        turned += [self.released(name, k, one) for k, one in enumerate(spec.do.release)]
+        turned += [x for k, one in enumerate(spec.do.release) for x in self.released(name, k, one)]
         turned += [
             self.switch("locks", called(x, self.scenario.joints), HELD) for x in spec.do.lock
         ]
@@ -431,7 +431,7 @@ class _Packing:
             self.states[drive] = self.at.state(kind, follows=entry)
         return self.states[drive]
 
-    def released(self, name: str, k: int, one: str) -> tuple[int, int]:
+    def released(self, name: str, k: int, one: str) -> list[tuple[int, int]]:
         path = (SECTION, name, "do", "release", k)
         joints, drives = self.scenario.joints, self.scenario.drives
         if one in self.scenario.forces:
@@ -439,7 +439,7 @@ class _Packing:
             raise ScenarioError(what, f"`remove: [{one}]` makes it act no more", path)
         check(one, [*joints, *drives], "joint or drive", path)
         if one in drives:
-            return self.switch("drives", one, LOOSE)
+            return [self.switch("drives", one, LOOSE)]
         if self.instances["joints", one].element.ideal:
             raise ScenarioError(
                 f"joint '{one}' has clearance and cannot come apart",
@@ -449,7 +449,12 @@ class _Packing:
         own = self.at.coordinates.get(one)
         if own is not None and own.kind == ARC:
             self.check_no_stop(one, path)
-        return self.switch("joints", one, LOOSE)
+        # what is apart has nothing to lock
+        locked = [
+            own for own in of_joint(one, joints) if (SECTION, lock_name(own)) in self.instances
+        ]
+        return [self.switch("joints", one, LOOSE),
+                *(self.switch("locks", own, AS_DRAWN) for own in locked)]  # fmt: skip
 
     def check_no_stop(self, joint: str, path: tuple) -> None:
         """Refuse to take apart a joint on a curve whose stops would go on acting far from it."""
