@@ -161,7 +161,7 @@ def axis(key: str, value: Any) -> Axis:
     hint = "Write a list, lin(a, b, n), log(a, b, n), `same as KEY`, or a distribution of samples."
     if isinstance(value, dict):
         hint = (
-            "What varies stands in `sweep` itself, by its whole name: `joints.A.clearance: [...]`."
+            "What varies stands in `sweep` itself: `joints.A.clearance: [...]`."
         )
     raise ScenarioError(f"no values to vary: {described(value)}", hint, (key,))
 
