@@ -54,7 +54,7 @@ def test_measured_errors_are_the_true_ones(method, pendulum, tight):
         assert abs(found.worst - max(true)) <= 2.0 * tight.uncertainty
         assert found.error > tight.uncertainty
         assert not found.unresolved
-        assert found.cpu > 0.0
+        assert found.cpu >= 0.0  # of a coarse clock
         assert found.steps > 0
 
 

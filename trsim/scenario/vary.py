@@ -160,9 +160,7 @@ def axis(key: str, value: Any) -> Axis:
         raise error.at(key) from None
     hint = "Write a list, lin(a, b, n), log(a, b, n), `same as KEY`, or a distribution of samples."
     if isinstance(value, dict):
-        hint = (
-            "What varies stands in `sweep` itself: `joints.A.clearance: [...]`."
-        )
+        hint = "What varies stands in `sweep` itself: `joints.A.clearance: [...]`."
     raise ScenarioError(f"no values to vary: {described(value)}", hint, (key,))
 
 
