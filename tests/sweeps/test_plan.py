@@ -7,6 +7,7 @@ import pytest
 
 from tests import small
 from trsim.errors import ScenarioError, TrsimError, UsageError
+from trsim.scenario.vary import FEW
 from trsim.sweeps.plan import faults, plan
 
 
@@ -45,6 +46,16 @@ def test_a_grid(planned):
     assert found.cases[1].data["joints"]["B"]["clearance"] == "0.1 mm"
     assert found.scenario(found.cases[1]).joints["B"].clearance == 1e-4
     assert "sweep" not in found.cases[0].data
+
+
+@pytest.mark.parametrize(
+    "asked, few, many", [("", "all", "summary"), ("keep: all, ", *["all"] * 2),
+                         ("keep: summary, ", *["summary"] * 2)],
+)  # fmt: skip
+def test_result_files_of_few_cases_are_kept(planned, asked, few, many):
+    for number, kept in ((FEW, few), (FEW + 1, many)):
+        found = planned(more=f"sweep: {{{asked}{B}: 'lin(0.1 mm, 0.3 mm, {number})'}}\n")
+        assert (found.keep, found.wished) == (kept, bool(asked))
 
 
 def test_side_by_side(planned):

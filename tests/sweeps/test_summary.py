@@ -139,6 +139,9 @@ def copy(folder, tmp_path):
 
 def test_again_runs_nothing_and_other_wishes_do(scenario, copy, tmp_path):
     assert made(scenario, copy) == []
+    silent = tmp_path / "silent.yaml"  # of so few cases it would keep the result files
+    silent.write_text(scenario.read_text().replace("keep: summary, ", ""))
+    assert made(silent, copy) == []
     other = tmp_path / "crank.yaml"
     other.write_text(scenario.read_text().replace(ASKED[1], "final:stroke"))
     assert made(other, copy) == ["clearance=0.2mm", "clearance=0.5mm"]

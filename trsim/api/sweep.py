@@ -36,7 +36,7 @@ class Options(TypedDict, total=False):
     memory      bytes for a case, 0: any
     retries     further attempts after the process of a case died
     keep        "all": the result file of every case; "summary": its numbers only; None: as the
-                scenario says
+                scenario says, or all of up to 200 cases and summaries of more
     """
 
     jobs: int | None
@@ -154,7 +154,7 @@ def planned_of(hears: Listener, given: Given, sets: tuple[str, ...], identity: s
 
 def keeping(planned: Plan, how: How) -> Plan:
     """The plan with what is to be kept of its cases."""
-    return planned._replace(keep=how.keep) if how.keep else planned
+    return planned._replace(keep=how.keep, wished=True) if how.keep else planned
 
 
 def checked(planned: Plan) -> None:

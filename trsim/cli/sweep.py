@@ -8,7 +8,7 @@ import click
 
 from trsim.cli.frame import NAMED, Answer, framed
 from trsim.cli.resume import Seconds
-from trsim.scenario.vary import KEEP
+from trsim.scenario.vary import KEEP, SUMMARY
 from trsim.system import LIMITS_MEMORY
 
 BYTES = {"": 1, "b": 1}  # and kb, mb, gb, kib, mib, gib
@@ -78,7 +78,8 @@ class Share(click.ParamType):
 )  # fmt: skip
 @click.option(
     "--keep", type=click.Choice(KEEP),
-    help="Keep every result file, or numbers only.  [default: as the scenario says, or all]",
+    help="Keep every result file, or numbers only.  [default: as the scenario says; else all "
+    "of up to 200 cases]",
 )  # fmt: skip
 @framed
 def command(
@@ -99,6 +100,9 @@ def command(
     how = How(**options)
     planned = keeping(planned_of(answer, scenario, sets, identity), how)
     folder = Path(output or f"runs/{Path(scenario).stem}")
+    if planned.keep == SUMMARY and not planned.wished:
+        answer.say(f"of {len(planned.cases):,} cases the numbers are kept; "
+                   "`--keep all` keeps their result files")  # fmt: skip
     answer.data |= {"folder": str(folder), "cases": len(planned.cases), "ran": 0, "counts": {},
                     "chosen": []}  # fmt: skip
 

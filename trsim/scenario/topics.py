@@ -190,7 +190,8 @@ SWEEP = (  # keys of `sweep` that are no path: word, what it may be, meaning
     ("samples", "whole number", "number of samples; for sobol a power of two"),
     ("seed", "whole number", "seed of the random numbers; the same seed gives the same cases on "
      "every machine"),
-    ("keep", "all | summary", "what is kept of every case: its result file, or only its numbers"),
+    ("keep", "all | summary", "what is kept of every case: its result file, or only its numbers; "
+     "without it all of up to 200 cases, and summaries of more"),
     ("numbers", "list", "further numbers of a run to keep for every case, as in `trsim show`: "
      "peak:B.contact_force@0.3..0.5"),
     ("until", "mapping of numbers of a run to widths", "for monte_carlo and sobol: samples are run "

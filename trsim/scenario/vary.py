@@ -7,7 +7,8 @@
     method: grid       all combinations;  zip: the values side by side;  or, of `samples` cases with
                        a `seed`: latin_hypercube, monte_carlo, sobol
 
-    keep: all          the result file of every case;  summary: its numbers only (sweeps/summary.py)
+    keep: all          the result file of every case; summary: its numbers only (sweeps/summary.py).
+                       Without it: all of up to FEW cases, summary of more
     numbers: [...]     which a summary has besides: peak:B.contact_force@0.3..0.5
     until, refine      which cases are run at all (adaptive.py)
 
@@ -32,6 +33,7 @@ CHOSEN = ("until", "refine")  # which cases are run
 SETTINGS = ("method", "samples", "seed", *KEPT, *CHOSEN)
 SUMMARY, ALL = "summary", "all"
 KEEP = (ALL, SUMMARY)
+FEW = 200  # cases whose result files are kept where nothing is said; one may have megabytes
 SPACED = ("lin", "log")
 DRAWN = ("uniform", "log_uniform", "normal")
 MOST = 100_000  # values of an axis, samples
@@ -66,7 +68,7 @@ class Sweep(NamedTuple):
     method: str = "grid"
     samples: int = 0
     seed: int = 0
-    keep: str = ALL
+    keep: str = ""  # as the number of cases says
     numbers: tuple[str, ...] = ()  # besides those that a summary has anyway
     until: Widths = ()
     refine: Refine | None = None
@@ -133,8 +135,8 @@ def _chosen(
 
 def _kept(data: dict[str, Any]) -> tuple[str, tuple[str, ...]]:
     """What is kept of the cases."""
-    keep, numbers = data.get("keep", ALL), data.get("numbers", [])
-    if keep not in KEEP:
+    keep, numbers = data.get("keep", ""), data.get("numbers", [])
+    if "keep" in data and keep not in KEEP:
         hint = known(keep, KEEP)
         raise ScenarioError(f"must be one of {', '.join(KEEP)}, got {described(keep)}", hint,
                             ("keep",))  # fmt: skip

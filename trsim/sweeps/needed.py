@@ -62,7 +62,7 @@ def unkept(entry: Entry, plan: Plan) -> str:
     if (at := place(entry.kept)) is None:
         return ""
     if plan.keep != SUMMARY:
-        return "its result file is asked for"
+        return "its result file is asked for" if plan.wished else ""
     return "" if at.words == words_digest(plan.numbers) else "other numbers are asked for"
 
 

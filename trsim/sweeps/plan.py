@@ -51,6 +51,7 @@ class Plan(NamedTuple):
     seed: int
     cases: tuple[Case, ...]
     keep: str  # of what cases give, see vary.py
+    wished: bool  # whether that was asked for
     numbers: tuple[str, ...]
     sets: tuple[str, ...]  # of the command line
     trees: dict[str, "_Named"]  # of the named cases
@@ -137,14 +138,19 @@ def plan(
     if "" not in named:
         keys, si = (CASE, *keys), {CASE: "-", **si}
     sweep = max((one.sweep for one in named.values()), key=lambda one: one.samples)
-    if len({(one.sweep.keep, one.sweep.numbers) for one in named.values()}) > 1:
+    sweeps = [one.sweep for one in named.values()]
+    if len({(one.keep or vary.ALL, one.numbers) for one in sweeps}) > 1:
         what = f"the cases of {path} differ in what is kept of them"
         raise UsageError(
             what, "Write the same `keep` and `numbers` in every `sweep`, or use --keep."
         )
     _check_numbers(sweep, first.tree)
-    return Plan(path, text, tree.files, keys, si, shown, sweep.method, sweep.samples, sweep.seed,
-                tuple(_distinct(found)), sweep.keep, sweep.numbers, sets, named)  # fmt: skip
+    wished = max(one.keep for one in sweeps)  # no two differ
+    keep = wished or (vary.ALL if len(found) <= vary.FEW else vary.SUMMARY)
+    return Plan(
+        path, text, tree.files, keys, si, shown, sweep.method, sweep.samples, sweep.seed,
+        tuple(_distinct(found)), keep, bool(wished), sweep.numbers, sets, named,
+    )  # fmt: skip
 
 
 def faults(found: Plan) -> Iterator[tuple[Case, TrsimError]]:
