@@ -5,7 +5,7 @@ from importlib import import_module
 
 NAMES = (
     *("startup", "memory", "reverser", "reverser_ideal", "reverser_steps", "reverser_table"),
-    *("rods", "skipping", "sweeps", "dask"),
+    *("rods", "skipping", "sweeps", "thousands", "dask"),
     *("slider_crank", "andrews", "pendulum", "windows", "chain", "stiff_chain", "chains"),
     "contacts",
     *("flexible_pendulum", "spatial", "turns"),

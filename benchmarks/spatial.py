@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from benchmarks.measure import SCENARIOS, run, trsim
 from benchmarks.startup import REPEATS, took
-from trsim.sweeps.local import processors
+from trsim.system import processors
 
 FOLDER = SCENARIOS / "thrust_reverser"
 TOLERANCES = ("1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9")

@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from benchmarks.measure import ROOT, SCENARIOS, trsim
-from trsim.sweeps.local import processors
+from trsim.system import processors
 
 SCENARIO = str(SCENARIOS / "thrust_reverser" / "clearance_ab_0.3mm.yaml")
 A, B = "joints.A.clearance", "joints.B.clearance"

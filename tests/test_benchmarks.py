@@ -1,0 +1,14 @@
+"""Measurements are made by hand: that each can begin is seen here."""
+
+from importlib import import_module
+
+import pytest
+
+from benchmarks.__main__ import NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_can_begin(name):
+    module = import_module(f"benchmarks.{name}")
+    assert callable(module.main)
+    assert module.__doc__
