@@ -1,12 +1,9 @@
 """Thousands of cases of which numbers are kept: the reverser with play, and P1.
 
-Wall time in s of whole commands on all processors, the CPU time of a case, the efficiency (CPU
-time over processors times wall time), and what the folder takes.
+Whole commands on all processors.  Efficiency: CPU time over wall time times processors.
 """
 
 import os
-import sys
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,40 +13,38 @@ from benchmarks.sweeps import SCENARIO, A, B, timed
 from trsim.system import processors
 
 P1 = str(SCENARIOS / "validation" / "slider_crank_friction.yaml")
-P1_CASES = ("joints.pin.clearance", "contact_laws.steel.restitution")
+REVERSER = (
+    "--set", f"{A}=lin(0.25 mm, 0.35 mm, 40)", "--set", f"{B}=lin(0.25 mm, 0.35 mm, 25)",
+)  # fmt: skip
+CRANK = (
+    "--set", "solver.end=3 ms", "--set", "joints.pin.clearance=lin(0.3 mm, 0.7 mm, 100)",
+    "--set", "contact_laws.steel.restitution=lin(0.8, 0.95, 100)",
+)  # fmt: skip
 
 
 def main() -> None:
-    some = float(sys.argv[2]) if len(sys.argv) > 2 else 1.0  # a share of the cases
-    reverser = (
-        "--set", f"{A}=lin(0.25 mm, 0.35 mm, {round(40 * some)})",
-        "--set", f"{B}=lin(0.25 mm, 0.35 mm, 25)",
-    )  # fmt: skip
-    clearance, restitution = P1_CASES
-    crank = (
-        "--set", "solver.end=3 ms",
-        "--set", f"{clearance}=lin(0.3 mm, 0.7 mm, {round(100 * some)})",
-        "--set", f"{restitution}=lin(0.8, 0.95, 100)",
-    )  # fmt: skip
+    print("| cases | wall time, s | CPU time of a case, ms | efficiency | MB | the same again, s |")
+    print("|---|---|---|---|---|---|")
     with TemporaryDirectory() as folder:
-        swept("reverser, 1 s", SCENARIO, reverser, Path(folder) / "reverser")
-        swept("P1 with friction, 3 ms", P1, crank, Path(folder) / "crank")
+        swept("of the reverser, 1 s", SCENARIO, REVERSER, Path(folder) / "reverser")
+        swept("of P1 with friction, 3 ms", P1, CRANK, Path(folder) / "crank")
 
 
 def swept(name: str, scenario: str, varied: Sequence[str], folder: Path) -> None:
-    """One sweep, and the same again."""
+    """A sweep, and the same again."""
     command = ("sweep", scenario, *varied, "--keep", "summary", "-o", str(folder))
     before = children()
     wall, told = timed(*command)
-    cpu = children() - before
+    cpu, cases = children() - before, told["cases"]
+    if told["counts"] != {"done": cases}:
+        raise RuntimeError(f"{name}: {told['counts']}")
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
-    cases, share = told["cases"], cpu / (processors() * wall)
-    each = 1e3 * cpu / cases
-    print(f"  {cases:,} cases of {name}: {wall:.0f} s, {each:.0f} ms of CPU time each, efficiency "
-          f"{share:.2f}, {size / 1e6:.0f} MB, {told['counts']}", flush=True)  # fmt: skip
-    began = time.perf_counter()
-    _, told = timed(*command)
-    print(f"  the same again: {time.perf_counter() - began:.2f} s, {told['ran']} run", flush=True)
+    again, told = timed(*command)
+    if told["ran"]:
+        raise RuntimeError(f"{name}: {told['ran']} ran again")
+    print(f"| {cases:,} {name} | {wall:.0f} | {1e3 * cpu / cases:.0f} | "
+          f"{cpu / (processors() * wall):.2f} | {size / 1e6:.0f} | {again:.1f} |",
+          flush=True)  # fmt: skip
 
 
 def children() -> float:

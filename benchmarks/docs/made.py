@@ -81,6 +81,7 @@ MADE: dict[str, Made] = {
     "windows": bench("windows"),
     "flexible_pendulum": bench("flexible_pendulum"),
     "sweeps": bench("sweeps", "trsim/sweeps"),
+    "thousands": bench("thousands", "trsim/sweeps", way="tables"),
     "dask": bench("dask", "trsim/sweeps", way="tables"),
     "startup": bench("startup", "trsim/kernels", "trsim/cli"),
     "certify": tested("cli/test_certify"),

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from trsim.assemble import hubs as choosing
-from trsim.assemble.assemble import as_drawn, pack
+from trsim.assemble.assemble import pack
+from trsim.assemble.build import Parts, as_drawn
 from trsim.assemble.coupling import nodes
 from trsim.assemble.reduce import jacobian
 from trsim.assemble.release import release
@@ -187,7 +188,7 @@ joints:
 """)
     at, instances = pack(scenario, frozenset(), None, ())
     assert at.coordinates["first"].drawn == 9.0
-    work, y = as_drawn(at, instances, all_rows(instances))
+    work, y = as_drawn(Parts.of(at, instances), all_rows(instances))
     assert np.abs(jacobian(work, 0.0, y)[0]).max() < 1e-15
 
 

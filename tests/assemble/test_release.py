@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from trsim.assemble import release as releases
-from trsim.assemble.assemble import assemble, build, pack
+from trsim.assemble.assemble import assemble, pack
+from trsim.assemble.build import Parts, build
 from trsim.assemble.rank import unique_reactions
 from trsim.assemble.reduce import jacobian, moves, weights
 from trsim.assemble.redundant import dependences
@@ -54,7 +55,7 @@ def without(scenario, mechanism, gone):
     """Rows left dependent, mobility and uniqueness of a mechanism with some rows let go."""
     at, instances = pack(scenario, frozenset(), None, ())
     rows = [r for r in all_rows(instances) if f"{r.element}.{r.axis}" not in gone]
-    full, y = build(at, instances, rows, 6), drawn(at, 6)
+    full, y = build(Parts.of(at, instances), rows, 6), drawn(at, 6)
     keep = np.flatnonzero(moves(full, mechanism.planar))
     J = jacobian(full, 0.0, y)[2][:, keep]
     inside = np.flatnonzero(np.abs(J).max(axis=1) > 1e-9).tolist()

@@ -9,7 +9,8 @@ A nut of mass m and moment of inertia I about the axis, h = pitch/(2 pi), its we
 import numpy as np
 import pytest
 
-from trsim.assemble.assemble import as_drawn, pack
+from trsim.assemble.assemble import pack
+from trsim.assemble.build import Parts, as_drawn
 from trsim.assemble.reduce import jacobian
 from trsim.assemble.rows import all_rows
 from trsim.elements.screw import Own
@@ -152,7 +153,7 @@ def test_it_is_closed_on_the_turn_it_is_drawn_on():
     for angle in ("200 deg", "-900 deg"):
         read = scenario(nut(axis=np.array([0.0, 0.0, 1.0])), f"bodies.nut.angle={angle}")
         at, instances = pack(read, frozenset(), None, ())
-        full, y = as_drawn(at, instances, all_rows(instances))
+        full, y = as_drawn(Parts.of(at, instances), all_rows(instances))
         assert np.abs(jacobian(full, 0.0, y)[0]).max() < 1e-12
         r = run(read)
         assert r["stroke"] == pytest.approx(FALL * r.t**2 / 2, abs=1e-8)

@@ -1,33 +1,19 @@
 """Scenario -> Model: pack the elements, drop what the scene does not need, lay out the outputs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from trsim import elements
 from trsim.assemble.addresses import Addresses
-from trsim.assemble.band import band_tables
-from trsim.assemble.beside import beside, near, near_rows
-from trsim.assemble.equations import derivative, poses, without_feedback
-from trsim.assemble.features import features
+from trsim.assemble.build import Parts, as_drawn, build, spans
 from trsim.assemble.hubs import hubs
 from trsim.assemble.instances import Column, Instance, RowName, Section
-from trsim.assemble.jumps import find_jumps, steep
-from trsim.assemble.layout import columns_of_forces, layout, no_outputs
-from trsim.assemble.least_norm import least_norm
-from trsim.assemble.light import lightened, unfit
-from trsim.assemble.loops import looped
+from trsim.assemble.jumps import find_jumps
+from trsim.assemble.layout import columns_of_forces, layout
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
-from trsim.assemble.on_beams import addresses
-from trsim.assemble.outputs import measured
-from trsim.assemble.pattern import Hubs, lines, no_pattern, pattern
 from trsim.assemble.planar import Planarity, listed, planarity
-from trsim.assemble.poles import poles
-from trsim.assemble.projection import on_rows, poses_and_rows, project_positions
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
@@ -39,36 +25,16 @@ from trsim.assemble.rows import (
     dropped,
     reactions,
 )
-from trsim.assemble.rubbing import rubbing, rubs_with
-from trsim.assemble.rubbing import table as rubbing_table
 from trsim.assemble.sections import sections
 from trsim.assemble.stages import Choice, Stages, silent
 from trsim.assemble.switches import SECTION, Switches, locks, parks, switches
-from trsim.assemble.tables import (
-    contact_numbers,
-    drawn,
-    eccentricity,
-    extent,
-    judged,
-    kernels,
-    levers,
-    lone,
-    masses,
-    norm,
-    struck,
-    tables,
-    turns,
-    unequal,
-    watched,
-    watched_rows,
-)
+from trsim.assemble.tables import drawn, extent
 from trsim.assemble.torsion import check_torsion
-from trsim.assemble.travel import travels
-from trsim.assemble.waves import pulsed, swinging
-from trsim.elements.contract import N_BOOK, Pair
+from trsim.assemble.waves import swinging
+from trsim.elements.contract import Pair
 from trsim.elements.coordinates import of_joint
 from trsim.elements.rows import column_of
-from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, Scene, scene
+from trsim.elements.scene import Model
 from trsim.errors import ScenarioError
 
 
@@ -88,7 +54,8 @@ def assemble(
     """
     at, instances = pack(scenario, ideal, drives, coordinates, stiff)
     rows = all_rows(instances)
-    full, y6 = as_drawn(at, instances, rows)  # one workspace for all
+    parts = Parts.of(at, instances)
+    full, y6 = as_drawn(parts, rows)  # one workspace for all
     verdict = (
         planarity(scenario, full, y6, at, instances, rows) if planar is None else Planarity(planar)
     )
@@ -103,7 +70,7 @@ def assemble(
         check_shaky(full, y6, instances, planar, rows, found)
     d = 3 if planar else 6
     own = hubs(full, y6, rows, kept, planar, spans(at))
-    model = build(at, instances, kept, d, own, dropped(rows, found))
+    model = build(parts, kept, d, own, dropped(rows, found))
     y0 = drawn(at, d)
     columns: list[Column] = []
     shown: tuple[Section, ...] = ()
@@ -147,17 +114,6 @@ def assemble(
     )
 
 
-def as_drawn(
-    at: Addresses, instances: list[Instance], rows: list[RowName]
-) -> tuple[Scene, NDArray[np.float64]]:
-    """The scene with some rows in space, its angles on the turns of the drawing (from others a row
-    that relates angles is far from closed), and its state."""
-    full = scene(build(at, instances, rows, 6))
-    for x in at.coordinates.values():
-        full.branch[x.entry] = x.drawn
-    return full, drawn(at, 6)
-
-
 def stages(at: Addresses, instances: list[Instance], first: Choice, planar: bool) -> Stages:
     """What user events make of the mechanism; planarity is that of the start.
 
@@ -167,17 +123,18 @@ def stages(at: Addresses, instances: list[Instance], first: Choice, planar: bool
     d = 3 if planar else 6
 
     def built(instances: list[Instance], rows: list[RowName]) -> Choice:
-        full, y6 = as_drawn(at, instances, rows)
+        parts = Parts.of(at, instances)
+        full, y6 = as_drawn(parts, rows)
         kept, found = choose_rows(full, y6, instances, planar, rows)
         check_rubbing(instances, rows, reactions(full, y6, planar)[1], found)
         own, left = hubs(full, y6, rows, kept, planar, spans(at)), dropped(rows, found)
-        return Choice(build(at, instances, kept, d, own, left), kept, left)
+        return Choice(build(parts, kept, d, own, left), kept, left)
 
     def rebuilt(instances: list[Instance], kept: list[RowName], left: list[RowName]) -> Model:
-        rows = [*kept, *left]
-        full, y6 = as_drawn(at, instances, rows)
+        parts, rows = Parts.of(at, instances), [*kept, *left]
+        full, y6 = as_drawn(parts, rows)
         own = hubs(full, y6, rows, kept, planar, spans(at))
-        return build(at, instances, kept, d, own, left)
+        return build(parts, kept, d, own, left)
 
     angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}
     rigid = [i for i in instances if i.section in ("drives", SECTION) and not i.row.is_force]
@@ -272,119 +229,3 @@ def pack(  # type: ignore[no-untyped-def]
                     con[column_of(k, len(instance.element.rows))] = at.coordinates[name].entry
             instances[n] = replace(instance, row=replace(instance.row, con=tuple(con)))
     return at, instances
-
-
-def spans(at: Addresses) -> list[tuple[int, int]]:
-    """First frame and number of nodes of every flexible bar."""
-    return [(beam.first, beam.nodes) for beam in at.beams.values()]
-
-
-def build(
-    at: Addresses,
-    instances: list[Instance],
-    rows: list[RowName],
-    d: int,
-    hubs: Hubs | None = None,
-    redundant: Sequence[RowName] = (),
-) -> Model:
-    """The arrays of a model with the given constraint rows, without outputs.
-
-    hubs: those of its solve; without them its rows can be looked at, and its equations not solved.
-    redundant: rows that are looked at only.
-    """
-    n = len(at.frames)
-    con, par = tables(instances, [*rows, *redundant])
-    of = masses(at, d)
-    mass, inertia = of.mass, of.inertia
-    solver = at.scenario.solver
-    size = extent(at)
-    n_z = N_BOOK + len(at.states)
-    d_node = 4 if d == 3 else 6
-    n_nodes = n - at.n_rigid
-    q_node, v_node = (3 if d == 3 else 7) * (at.n_rigid - 1), d * (at.n_rigid - 1)
-    frames = [r.frames for r in rows]
-    arms = levers(at, lone(at, size, mass, inertia))
-    scale_kind, scale = norm(at, d, size, arms)
-    contacts = [e for e, i in enumerate(instances) if i.row.contact is not None]
-    rubs = rubbing_table(instances)
-    if len(of.light):
-        unfit([at.owners[f] for f in of.light], of.light, [i.row for i in instances], bool(rubs))
-    stabilisation = {"none": NONE, "baumgarte": BAUMGARTE, "projection": PROJECTION}
-    baumgarte = solver.baumgarte
-    return Model(
-        d=d,
-        d_node=d_node,
-        n=n,
-        n_r=at.n_rigid,
-        n_q=q_node + d_node * n_nodes,
-        n_v=v_node + d_node * n_nodes,
-        q_node=q_node,
-        v_node=v_node,
-        n_z=n_z,
-        m=len(rows),
-        unequal=int(unequal(at, mass, inertia, d)),
-        mass=mass,
-        inertia=inertia,
-        mass_inverse=of.mass_inverse,
-        inertia_inverse=of.inertia_inverse,
-        light=of.light,
-        lacking=of.lacking,
-        lightened=lightened.address() if len(of.light) else 0,
-        axes=at.rotation.reshape(n, 9).copy(),
-        depth=at.at_start[:, 2].copy(),
-        con=con,
-        par=par,
-        tab=np.array(at.tab),
-        n_s=at.n_s,
-        n_mem=N_MEM + max((i.element.n_mem for i in instances), default=0),
-        rated=np.array([(k, s) for s, k in at.rates.items()], np.int64).reshape(-1, 2),
-        **turns(at, d),
-        **kernels(instances),
-        **lines([*frames, *(r.frames for r in redundant)]),
-        **(no_pattern(len(frames), n) if hubs is None else pattern(frames, n, spans(at), hubs)),
-        **watched_rows(instances, rows, redundant, size),
-        shared_out=least_norm.address() if redundant else 0,
-        **band_tables(list(at.beams.values()), frames, n),
-        derivative=derivative.address(),
-        poses=poses.address(),
-        poses_and_rows=poses_and_rows.address(),
-        newton_step=project_positions.address(),
-        on_rows=on_rows.address(),
-        measured=measured.address(),
-        beside=beside.address(),
-        plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
-        near=near(solver, rows, spans(at)),
-        near_rows=0.0 if len(of.light) else near_rows(solver, rows, spans(at)),
-        looped=looped(instances, rows, spans(at)),
-        judged=judged(instances),
-        tolerance=solver.tolerance,
-        on_beams=np.array(addresses(at.beams), np.int64),
-        stabilisation=stabilisation[solver.stabilisation],
-        alpha=baumgarte.alpha if baumgarte else 0.0,
-        beta=baumgarte.beta if baumgarte else 0.0,
-        scale_kind=scale_kind,
-        scale=scale,
-        contact=np.array(contacts, np.int64),
-        contact_par=contact_numbers(at, instances, contacts, arms),
-        contact_state=np.array([i.row.contact.state for i in instances if i.row.contact], np.int64),
-        contact_states=np.array(
-            [i.row.contact.states for i in instances if i.row.contact], np.int64
-        ),
-        contact_impact=struck(at, [instances[e] for e in contacts]),
-        contact_angle=np.array([eccentricity(instances[e].element) for e in contacts], np.int64),
-        contact_width=np.array(
-            [sum(c.size for c in instances[e].channels) for e in contacts], np.int64
-        ),
-        **no_outputs(max(len(instances), 1)),
-        **watched(at.switches, size),
-        **features(at, instances),
-        steep=steep(at, instances),
-        **poles(at, instances),
-        rubbing=np.array(rubs, np.int64).reshape(-1, 6),
-        rubbed_at=rubbing.address() if rubs else 0,
-        rubs_with=rubs_with.address() if rubs else 0,
-        **travels(instances, contacts, at.switches),
-        **pulsed(swinging(at, instances, at.waves)),
-        size=size,
-        reach=min(size, max(arms[1:], default=size)),
-    )

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.addresses import Addresses
-from trsim.assemble.assemble import as_drawn, pack
+from trsim.assemble.assemble import pack
+from trsim.assemble.build import Parts, as_drawn
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.rank import DEPENDENT, dependent_rows, unique_reactions
@@ -105,7 +106,7 @@ def self_stress(
 ) -> Stress:
     """Null spaces of J^T as drawn (where that is not singular) and at perturbed positions."""
     rows = all_rows(instances)
-    full, y6 = as_drawn(at, instances, rows)
+    full, y6 = as_drawn(Parts.of(at, instances), rows)
     inside = np.flatnonzero(in_solve(full, jacobian(full, 0.0, y6)[2], mechanism.planar)).tolist()
     keep = moves(full, mechanism.planar)
     geometric = [r for r in inside if instances[rows[r].instance].section == "joints"]
