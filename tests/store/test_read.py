@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 import xarray
 
+from tests import small
 from trsim.errors import FileError, UsageError
 from trsim.store import describe
 from trsim.store.read import read
@@ -47,7 +48,9 @@ def test_cause_names_what_the_system_said():
     assert describe.cause(OSError(text)) == "No space left on device"
 
 
-def test_xarray_opens_a_result_with_one_line(result):
+def test_xarray_opens_a_result_with_one_line(tmp_path):
+    small.run(tmp_path / "run.h5", *small.FEW)
+    result = read(tmp_path / "run.h5")
     with xarray.open_dataset(result.path, engine="h5netcdf") as data:
         assert data.sizes["time"] == result.rows
         for name in result.names:
@@ -55,5 +58,5 @@ def test_xarray_opens_a_result_with_one_line(result):
             assert data[name].attrs["units"] == result.unit(name)
             assert data[name].dims[0] == "time"
         np.testing.assert_array_equal(data.time.values, result.time)
-        force = data["B.force"].sel({"component.xyz": "y"})
-        np.testing.assert_array_equal(force, result.channel("B.force.y"))
+        place = data["crank.position"].sel({"component.xyz": "y"})
+        np.testing.assert_array_equal(place, result.channel("crank.position.y"))
