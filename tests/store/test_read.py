@@ -48,6 +48,27 @@ def test_cause_names_what_the_system_said():
     assert describe.cause(OSError(text)) == "No space left on device"
 
 
+@pytest.mark.parametrize("key", ["units", "long_name"])
+@pytest.mark.parametrize("value", [3.0, ["m", "m"], None])
+def test_what_a_dataset_says_of_itself_is_text(key, value, tmp_path):
+    small.copy(tmp_path / "x.h5", *small.FEW)
+    with h5py.File(tmp_path / "x.h5", "r+") as file:
+        file["stroke"].attrs[key] = h5py.Empty("S1") if value is None else value
+    with pytest.raises(FileError, match=f"its {key} is no text"):
+        read(tmp_path / "x.h5")
+
+
+def test_units_are_those_that_were_written(tmp_path):
+    """As variable text, as text of fixed length, or not there."""
+    small.copy(tmp_path / "x.h5", *small.FEW)
+    with h5py.File(tmp_path / "x.h5", "r+") as file:
+        assert read(tmp_path / "x.h5").units["stroke"] == file["stroke"].attrs["units"] == "m"
+        file["stroke"].attrs["units"] = "µm"
+        del file["motor.force"].attrs["units"]
+    found = read(tmp_path / "x.h5")
+    assert (found.units["stroke"], found.units["motor.force"]) == ("µm", "-")
+
+
 def test_xarray_opens_a_result_with_one_line(tmp_path):
     small.run(tmp_path / "run.h5", *small.FEW)
     result = read(tmp_path / "run.h5")
