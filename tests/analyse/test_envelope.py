@@ -122,8 +122,8 @@ def test_the_abscissa_is_interpolated_by_its_rate(cases, tmp_path):
     """A cubic through values and rates is 30 times nearer than a line between rows."""
     fine = read(cases.cases[0].file)
     coarse = read(case(tmp_path, "coarse", 1, "output.every=20 ms").file)
-    rows, t = Rows(coarse), fine.time
-    exact = fine.channel("angle")
+    rows, t = Rows(coarse), fine.time[::5]
+    exact = fine.channel("angle")[::5]
     cubic = [rows.place("angle", time) for time in t.tolist()]
     line = np.interp(t, coarse.time, coarse.channel("angle"))
     assert np.abs(cubic - exact).max() < np.abs(line - exact).max() / 30.0

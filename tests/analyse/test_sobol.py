@@ -133,7 +133,7 @@ def test_too_few_rows_are_told(study):
         ab = np.array([np.where(np.arange(3) == i, b, a).sum(axis=1) for i in range(3)])
         return indices(("a", "b", "c"), Blocks(a.sum(axis=1), b.sum(axis=1), ab), "x")
 
-    told = [text for seed in range(20) for text in impossible(of(8, seed))]
+    told = [text for seed in (13, 14, 15) for text in impossible(of(8, seed))]
     assert any("add up to" in text for text in told)
     values, _ = blocks(places(study, study.cases), lambda case: ishigami(case.values))
     good = indices(KEYS, values)

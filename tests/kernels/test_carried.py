@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 
+from tests.kernels.objects import sections
 from tests.kernels.test_machine import TOTAL, arguments, expected, total
 from tests.sizes import RELEASE
 from trsim.assemble.assemble import assemble
@@ -22,6 +23,7 @@ from trsim.kernels.machine import Compiled
 from trsim.kernels.packed import A2, Packed
 from trsim.kernels.signatures import f8, float64, i8
 from trsim.scenario.load import load
+from trsim.solve.methods.rk4 import step
 
 pytestmark = [
     pytest.mark.skipif(PYTHON, reason="nothing is compiled"),
@@ -368,23 +370,10 @@ def test_functions_are_all_there_before_a_scenario_is_read():
 
 
 SAME = """
-from tests.kernels.test_carried import sections, stepping
-print(sections(stepping().translated()[1]))
+from tests.kernels.objects import sections
+from trsim.solve.methods.rk4 import step
+print(sections(step.translated()[1]))
 """
-
-
-def stepping():
-    [one] = [f for f in carry.functions() if carried.name(f.python) == "solve.methods.rk4.step"]
-    return one
-
-
-def sections(objects):
-    """Instructions and constants of an object file; names have counts of the compiler in them."""
-    import llvmlite.binding as llvm
-
-    parts = llvm.ObjectFileRef.from_data(objects).sections()
-    told = [((part.name() or b"").decode(), part.data().hex()) for part in parts]
-    return [(name, data) for name, data in told if name.startswith((".ltext", ".text", ".rodata"))]
 
 
 @pytest.mark.parametrize("target", carried.TARGETS)
@@ -395,7 +384,7 @@ def test_code_is_what_numba_makes_for_that_processor(target):
         [sys.executable, "-c", SAME], cwd=ROOT, env={**os.environ, **asked},
         capture_output=True, text=True, check=True,
     )  # fmt: skip
-    made = sections(stepping().translated(carry.processor(target))[1])
+    made = sections(step.translated(carry.processor(target))[1])
     assert max(len(data) for _, data in made) > 1000
     assert done.stdout.strip() == str(made)
 

@@ -116,15 +116,17 @@ def reached(python):
 @pytest.fixture
 def told(monkeypatch):
     """told(kernel, edited): the digest in its key; what reaches `edited` is read again."""
-    kept, whole = {}, fingerprint._function.__wrapped__
+    kept, callers, whole = {}, defaultdict(set), fingerprint._function.__wrapped__
 
     def remembered(python, told_of):
         if python not in kept:
             kept[python] = whole(python, told_of)
+            for callee in kept[python].reached:
+                callers[callee].add(python)
         return kept[python]
 
     def key(kernel, edited=()):
-        for python in above(edited, kept) if edited else ():
+        for python in above(edited, callers) if edited else ():
             kept.pop(python, None)
         return fingerprint._function(kernel.python, fingerprint._code).digest
 
@@ -132,12 +134,8 @@ def told(monkeypatch):
     return key
 
 
-def above(edited, kept):
-    """Functions, and all whose digests were made of theirs."""
-    callers = {}
-    for python, told in kept.items():
-        for callee in told.reached:
-            callers.setdefault(callee, []).append(python)
+def above(edited, callers):
+    """Functions, and all whose digests were made of theirs at any time."""
     found, waiting = set(), list(edited)
     while waiting:
         one = waiting.pop()

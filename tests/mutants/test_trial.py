@@ -31,6 +31,7 @@ def tree(tmp_path, monkeypatch):
     for name in ("mutated", "whole"):
         shutil.copytree(root, tmp_path / name)
     monkeypatch.setattr(trial, "ROOT", root)
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # of which none has a part here
     times = Times(tmp_path / "seconds.json")
     return Tree(tmp_path / "mutated", tmp_path / "whole", tmp_path / "cache", times)
 

@@ -211,14 +211,14 @@ def test_rings_and_wires_are_closed():
 
 def test_a_body_reaches_to_its_load(tmp_path):
     """What a force acts on is a part of the body: the bucket of an excavator has its tip."""
-    moved, sizes = staged(validation(tmp_path, "excavator_arm"))
+    moved, sizes = staged(validation(tmp_path, "excavator_arm", "solver.end=10 ms"))
     ends = {tuple(at) for pair in bodies.skeleton(moved.drawn, sizes, "bucket") for at in pair}
     assert (6.4, -1.6, 0.0) in ends
 
 
 def test_a_door_has_a_leaf(tmp_path):
     """What hangs on one line would be seen as that line, which does not turn."""
-    moved, sizes = staged(validation(tmp_path, "kitchen_door"))
+    moved, sizes = staged(validation(tmp_path, "kitchen_door", "solver.end=10 ms"))
     found = bodies.skeleton(moved.drawn, sizes, "door")
     wanted = [[[0, 0, 0.2], [0, 0, 1.6]], [[0, 0, 0.9], [0.3, 0, 0.9]]]
     assert np.array(found) == pytest.approx(np.array(wanted), abs=1e-12)

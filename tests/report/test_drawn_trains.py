@@ -65,7 +65,7 @@ TEXTS = {
 def run_of(folder, name, *sets):
     if name in TEXTS:
         return of(folder, *sets, text=TEXTS[name])
-    return validation(folder, name, 'output.channels=["*", "*.rotation"]', *sets)
+    return validation(folder, name, 'output.channels=["*.position", "*.rotation"]', *sets)
 
 
 TRAINS = ["planetary_gear", "differential", "arm", "bevel"]
@@ -256,7 +256,7 @@ def test_a_worm_goes_through_its_wheel(y, how, right, tmp_path):
 
 def test_a_screw_goes_through_its_nut(tmp_path):
     """The thread is on the spindle, turns with it, and is a right-handed one of that pitch."""
-    run = validation(tmp_path, "screw_jack", 'output.channels=["*", "*.rotation"]')
+    run = validation(tmp_path, "screw_jack", 'output.channels=["*.position", "*.rotation"]')
     moved, _, things = made(run, threads.screws)
     ((mesh, _),) = things["thread screw"].pieces
     closed(mesh)
@@ -293,7 +293,7 @@ def test_teeth_of_a_start_elsewhere_are_told(tmp_path):
     run = validation(tmp_path, "planetary_gear", "initial={shaft: 40 deg}")
     assert any("teeth and marks" in told for told in film(run).warnings)
     run = validation(tmp_path, "planetary_gear", "initial={shaft: 40 deg}",
-                     'output.channels=["*", "*.rotation"]')  # fmt: skip
+                     'output.channels=["*.position", "*.rotation"]')  # fmt: skip
     assert film(run).warnings == ()
 
 

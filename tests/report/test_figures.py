@@ -35,13 +35,20 @@ def drawn(path):
 
 
 @pytest.fixture(scope="module")
-def reports(paths, tmp_path_factory):
-    """What is written of one run, and of two; of those a figure of each kind."""
-    folder = tmp_path_factory.mktemp("figures")
+def few(tmp_path_factory):
+    """Two runs with a figure of each kind."""
+    folder = tmp_path_factory.mktemp("few")
     two = [folder / "a.h5", folder / "b.h5"]
     for path, clearance in zip(two, ("0.5mm", "0.1mm"), strict=True):
         small.run(path, f"joints.B.clearance={clearance}", *small.FEW)
-    return report(paths[0], folder / "one", COARSE), report(two, folder / "two", COARSE)
+    return two
+
+
+@pytest.fixture(scope="module")
+def reports(paths, few, tmp_path_factory):
+    """What is written of one run, and of two."""
+    folder = tmp_path_factory.mktemp("figures")
+    return report(paths[0], folder / "one", COARSE), report(few, folder / "two", COARSE)
 
 
 @pytest.mark.parametrize("several", [False, True])
@@ -174,17 +181,17 @@ def test_what_cannot_be_reported_is_told(paths, tmp_path):
         report(paths[0], tmp_path / "file" / "folder")
 
 
-def test_a_report_is_the_same_every_time_and_needs_no_solver(paths, reports, tmp_path):
+def test_a_report_is_the_same_every_time_and_needs_no_solver(few, reports, tmp_path):
     """In a process of its own.  Nor pyplot, which would look for a screen."""
     code = (
         "import sys; from trsim.report import report; from trsim.report.looks import Looks; "
-        f"report(sys.argv[1], sys.argv[2], {COARSE!r}); "
+        f"report(sys.argv[1:3], sys.argv[3], {COARSE!r}); "
         "assert not {'numba', 'pandas', 'matplotlib.pyplot', 'trsim.solve'} & set(sys.modules)"
     )
     root = Path(__file__).parents[2]
-    command = [sys.executable, "-c", code, str(paths[0]), str(tmp_path)]
+    command = [sys.executable, "-c", code, *map(str, few), str(tmp_path)]
     subprocess.run(command, check=True, cwd=root)  # noqa: S603
     names = {path.name for path in tmp_path.iterdir()}
-    assert names == {path.name for path in reports[False]}
-    for path in reports[False]:
+    assert names == {path.name for path in reports[True]}
+    for path in reports[True]:
         assert (tmp_path / path.name).read_bytes() == path.read_bytes()

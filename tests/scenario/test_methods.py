@@ -50,8 +50,12 @@ def named(node: ast.AST) -> bool:
 
 
 def test_nobody_asks_for_a_name():
+    words = (*METHODS, "scipy:")
     for path in (ROOT / "trsim").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
+        text = path.read_text()
+        if not any(word in text for word in words):
+            continue
+        for node in ast.walk(ast.parse(text)):
             compared = isinstance(node, ast.Compare)
             called = isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "startswith"
             asked = [one for one in ast.walk(node) if named(one)] if compared or called else []

@@ -11,7 +11,6 @@ import pytest
 from tests import small
 from tests.elsewhere import needs
 from tests.sizes import size
-from tests.store import outside
 from tests.store.outside import ROOT, started
 from trsim.store.hdf5 import read
 
@@ -136,20 +135,51 @@ def test_flipped(result, tmp_path):
     assert found["harmless"] < 0.2 * FLIPS
 
 
-@pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
-def test_truncated_part_is_settled_at_once_and_recovered(share, running_part, tmp_path):
+# Shows and recovers files, one command after the other: each line a code, then a document
+COMMANDS = """
+import contextlib, io, json, signal, sys
+from trsim.cli import main
+for name in sys.argv[1:]:
+    for command in ("show", "recover"):
+        signal.alarm(20)
+        out, code = io.StringIO(), 0
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()):
+            try:
+                main([command, name, "--json"])
+            except SystemExit as ended:
+                code = ended.code
+        print(json.dumps([name, command, code, json.loads(out.getvalue())]), flush=True)
+"""
+SHARES = [0.3, 0.6, 0.9]
+
+
+@pytest.fixture(scope="module")
+def truncated(running_part, tmp_path_factory):
+    """What becomes of a part of which a share is left: folder, and (code, document) by command."""
+    folder, content = tmp_path_factory.mktemp("truncated"), running_part.read_bytes()
+    for share in SHARES:
+        (folder / f"{share}.h5.part").write_bytes(content[: int(share * len(content))])
+    names = [f"{share}.h5.part" for share in SHARES]
+    out, _ = started(folder, "-c", COMMANDS, *names).communicate(timeout=120)
+    told = {}
+    for name, command, code, document in map(json.loads, out.splitlines()):
+        told[name, command] = code, document
+    return folder, told
+
+
+@needs("alarm")
+@pytest.mark.parametrize("share", SHARES)
+def test_truncated_part_is_settled_at_once_and_recovered(share, truncated):
     """HDF5 in SWMR mode would go on looking for what is not there."""
-    content = running_part.read_bytes()
-    (tmp_path / "x.h5.part").write_bytes(content[: int(share * len(content))])
+    folder, told = truncated
     for name in ("show", "recover"):
-        process = outside.trsim(tmp_path, name, "x.h5.part", "--json")
-        document = json.loads(process.communicate(timeout=20)[0])
-        if name == "show" and process.returncode == 7:
+        code, document = told[f"{share}.h5.part", name]
+        if name == "show" and code == 7:
             assert "trsim recover" in document["errors"][0]["hint"]
             continue
         print(f"cut at {share:.0%}, {name}: {document.get('rows', document['errors'])}")
-        assert process.returncode in (0, 7)
-        if name == "recover" and process.returncode == 0:
-            run = read(tmp_path / "x.recovered.h5")
+        assert code in (0, 7)
+        if name == "recover" and code == 0:
+            run = read(folder / f"{share}.recovered.h5")
             assert np.all(np.diff(run.time) > 0.0)
             assert np.all(np.isfinite(run.channel("B.force")))

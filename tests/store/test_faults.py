@@ -45,7 +45,7 @@ def test_full_disk(limit, tmp_path):
 
 
 @pytest.mark.parametrize("number, code", SIGNALS)
-@pytest.mark.parametrize("wait", [0.0, 0.8])
+@pytest.mark.parametrize("wait", [0.0, 0.6])  # s; rows are flushed after half a second
 def test_signal(number, code, wait, tmp_path):
     process = outside.begun(tmp_path, "--json")
     outside.blocks_until(process, wait)
@@ -72,7 +72,7 @@ def test_signal(number, code, wait, tmp_path):
 def test_second_signal_ends_at_once(number, code, tmp_path):
     """The one that comes while the file is being closed, if it does not come too late."""
     process = outside.begun(tmp_path)
-    outside.blocks_until(process, 0.5)
+    outside.blocks_until(process, 0.3)
     sent = time.monotonic()
     while process.poll() is None and time.monotonic() - sent < 2.0:
         process.send_signal(number)

@@ -13,9 +13,8 @@ from pathlib import Path
 import h5py
 import pytest
 
-from tests import small
 from tests.sizes import size
-from tests.sweeps.test_go import contents
+from tests.sweeps.test_go import TEXT, contents
 from trsim import store, sweeps
 from trsim.assemble.assemble import assemble
 from trsim.errors import FileError, UsageError
@@ -32,8 +31,6 @@ from trsim.sweeps.plan import plan
 
 ENDING = {".part": PART, ".part.new": PART, ".lock": LOCK, ".checkpoint": CHECKPOINT,
           ".checkpoint.new": CHECKPOINT}  # fmt: skip
-# few channels: each takes calls to be made, none of which changes the folder
-TEXT = small.SLIDER_CRANK.replace("every: 0.01 ms", "every: 0.01 ms, channels: [stroke, B.force]")
 SETS = ("joints.B.clearance=[0.4 mm, 0.5 mm]", "solver.end=0.5 ms")
 
 

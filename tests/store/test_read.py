@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 import xarray
 
+from tests import small
 from trsim.errors import FileError, UsageError
 from trsim.store import describe
 from trsim.store.read import read
@@ -47,7 +48,30 @@ def test_cause_names_what_the_system_said():
     assert describe.cause(OSError(text)) == "No space left on device"
 
 
-def test_xarray_opens_a_result_with_one_line(result):
+@pytest.mark.parametrize("key", ["units", "long_name"])
+@pytest.mark.parametrize("value", [3.0, ["m", "m"], None])
+def test_what_a_dataset_says_of_itself_is_text(key, value, tmp_path):
+    small.copy(tmp_path / "x.h5", *small.FEW)
+    with h5py.File(tmp_path / "x.h5", "r+") as file:
+        file["stroke"].attrs[key] = h5py.Empty("S1") if value is None else value
+    with pytest.raises(FileError, match=f"its {key} is no text"):
+        read(tmp_path / "x.h5")
+
+
+def test_units_are_those_that_were_written(tmp_path):
+    """As variable text, as text of fixed length, or not there."""
+    small.copy(tmp_path / "x.h5", *small.FEW)
+    with h5py.File(tmp_path / "x.h5", "r+") as file:
+        assert read(tmp_path / "x.h5").units["stroke"] == file["stroke"].attrs["units"] == "m"
+        file["stroke"].attrs["units"] = "µm"
+        del file["motor.force"].attrs["units"]
+    found = read(tmp_path / "x.h5")
+    assert (found.units["stroke"], found.units["motor.force"]) == ("µm", "-")
+
+
+def test_xarray_opens_a_result_with_one_line(tmp_path):
+    small.run(tmp_path / "run.h5", *small.FEW)
+    result = read(tmp_path / "run.h5")
     with xarray.open_dataset(result.path, engine="h5netcdf") as data:
         assert data.sizes["time"] == result.rows
         for name in result.names:
@@ -55,5 +79,5 @@ def test_xarray_opens_a_result_with_one_line(result):
             assert data[name].attrs["units"] == result.unit(name)
             assert data[name].dims[0] == "time"
         np.testing.assert_array_equal(data.time.values, result.time)
-        force = data["B.force"].sel({"component.xyz": "y"})
-        np.testing.assert_array_equal(force, result.channel("B.force.y"))
+        place = data["crank.position"].sel({"component.xyz": "y"})
+        np.testing.assert_array_equal(place, result.channel("crank.position.y"))

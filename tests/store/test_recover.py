@@ -20,6 +20,7 @@ from trsim.store.read import read, verify
 from trsim.store.recover import copy, recover
 
 KILLS = np.random.default_rng(9).uniform(0.05, 1.6, (size(1, 125), 4))  # s after the first rows
+CHANNELS = "output.channels=[crank_angle, stroke, B.force, B.penetration]"
 
 
 def whole(path):
@@ -53,18 +54,19 @@ def test_killed_run(waits, tmp_path, record_property):
     """One process, stopped at each of some instants: its folder is what a kill would leave."""
     here, told, killed = tmp_path / "here", [], {}
     here.mkdir()
-    process = outside.begun(here)
+    process = outside.begun(here, "--set", CHANNELS)
     for wait in sorted(waits):
         killed[wait] = stopped(process, told, wait)
         shutil.copytree(here, tmp_path / f"{wait}")
         process.send_signal(signal.SIGCONT)
     outside.killed(process)
     for wait, when in killed.items():
-        lost = recovered(tmp_path / f"{wait}", [one for one in told if one[1] <= when], when)
+        once = recover if wait == max(killed) else copy  # which is its work
+        lost = recovered(tmp_path / f"{wait}", [one for one in told if one[1] <= when], when, once)
         record_property("lost", lost)
 
 
-def recovered(folder, told, killed):
+def recovered(folder, told, killed, recover):
     """How many s of a killed run are lost, after looking at what is not."""
     recover(folder / "runs/crank.h5.part", folder / "x.h5")
     run = whole(folder / "x.h5")
@@ -215,5 +217,6 @@ def test_an_event_without_an_angle_is_not_an_unwritten_row(tmp_path):
     with h5py.File(tmp_path / "events.h5", "w") as file:
         file["time"], file["angle"] = [0.1, 0.2, 0.3], [np.nan, 0.5, np.nan]
         file["speed"] = [1.0, 2.0, np.nan]
-        piece = salvage._piece(file, ["time", "angle", "speed"], 0, 0.0)
+        items = {name: file[name] for name in ("time", "angle", "speed")}
+        piece = salvage._piece(items, False, 0, 0.0)
     assert piece["time"].tolist() == [0.1, 0.2]

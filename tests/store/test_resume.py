@@ -1,13 +1,13 @@
 """A run that ended early goes on from its checkpoint: the result is that of an unbroken run."""
 
+import contextlib
 import errno
+import io
 import json
 import os
 import re
 import shutil
 import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import h5py
@@ -15,11 +15,12 @@ import numpy as np
 import pytest
 
 from tests import small
-from tests.elsewhere import PATH, needs
+from tests.elsewhere import needs
 from tests.sizes import size
 from tests.store import outside
 from trsim.assemble.assemble import assemble
 from trsim.assemble.instances import Column
+from trsim.cli import main
 from trsim.errors import FileError
 from trsim.scenario.load import loads
 from trsim.solve import simulate as solver
@@ -33,7 +34,9 @@ ALWAYS = 1e-9  # s between two checkpoints: one after every block
 INERTIAS = [f"bodies.{b}.inertia=[1e-4, 2e-4, 2e-4]" for b in ("crank", "rod", "slider")]
 SPATIAL = ("planar=false", *INERTIAS)
 RK4 = ("solver.method=rk4", "solver.step=4us")
-KINDS = {"dop853": (), "dop853 spatial": SPATIAL, "rk4": RK4, "rk4 spatial": (*RK4, *SPATIAL)}
+# all channels of one kind: what a file does with one it does with each
+KINDS = {"dop853": (), "dop853 spatial": (*small.FEW, *SPATIAL), "rk4": (*small.FEW, *RK4),
+         "rk4 spatial": (*small.FEW, *RK4, *SPATIAL)}  # fmt: skip
 
 
 def cut(path, scenario, mechanism, blocks, closed=False):
@@ -180,19 +183,19 @@ def test_a_disk_without_room_to_go_on(tmp_path, monkeypatch, scenario, mechanism
     assert verify(path)
 
 
-# --- in processes of their own ---
+# --- ended in processes of their own, and gone on with in this one ---
 
 
 def trsim(folder, *arguments):
-    """`trsim run` of the long scenario; code, document, stderr."""
-    command = [sys.executable, "-m", "trsim", "run", "crank.yaml", "--json", *arguments]
-    environment = {"PYTHONPATH": PATH}
-    done = subprocess.run(  # noqa: S603
-        command, cwd=folder, env={**os.environ, **environment}, capture_output=True,
-        text=True, timeout=120,
-    )  # fmt: skip
-    assert "Traceback" not in done.stderr
-    return done.returncode, json.loads(done.stdout), done.stderr
+    """`trsim run` of the long scenario, in this process; code, document, stderr."""
+    out, err = io.StringIO(), io.StringIO()
+    with (
+        contextlib.chdir(folder), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err),
+        pytest.raises(SystemExit) as ended,
+    ):  # fmt: skip
+        main(["run", "crank.yaml", "--json", *arguments])
+    assert "Traceback" not in err.getvalue()
+    return ended.value.code, json.loads(out.getvalue()), err.getvalue()
 
 
 END = ("--set", "solver.end=0.12")

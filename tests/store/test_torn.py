@@ -26,7 +26,7 @@ PAGE = 4096  # bytes
 CHUNK = 256  # rows
 HEADER = 400  # bytes, more than the largest header of a dataset
 WRITING = 0x01  # in byte 11 of a file
-SETS = ("output.channels=[stroke, B.force]", "output.every=4us", "solver.end=1.6ms")
+SETS = ("output.channels=[stroke, B.force]", "output.every=4us", "solver.end=1.3ms")
 
 
 class Recorded(io.FileIO):

@@ -19,7 +19,7 @@ def run(task, begun):
     if do == "sleep":
         time.sleep(60.0)
     if do == "eat":
-        return {"status": "done", "reason": str(len(bytearray(1 << 30)))}
+        return {"status": "done", "reason": str(len(bytearray(1 << 29)))}
     if do == "threads":
         return {"status": "done", "reason": os.environ["OPENBLAS_NUM_THREADS"]}
     if do == "print":

@@ -7,9 +7,8 @@ import time
 
 import pytest
 
-from tests import small
 from tests.elsewhere import PATH
-from tests.sweeps.test_go import FINE, contents, made
+from tests.sweeps.test_go import FINE, TEXT, contents, made
 from tests.sweeps.test_local import JOB, ended, tasks
 from trsim.errors import FileError
 from trsim.sweeps import dask
@@ -51,7 +50,7 @@ def test_nobody_there(monkeypatch):
 def test_a_worker_killed(cluster, tmp_path):
     """The sweep is the one of a single machine, to the last bit."""
     scenario = tmp_path / "crank.yaml"
-    scenario.write_text(small.SLIDER_CRANK)
+    scenario.write_text(TEXT)
     made(scenario, tmp_path / "calm", sets=FINE)
     workers = [nanny.process.process.pid for nanny in cluster.workers.values()]
     planned, folder = plan(str(scenario), FINE, "one"), tmp_path / "stormy"

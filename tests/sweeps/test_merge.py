@@ -9,8 +9,8 @@ from itertools import islice
 import h5py
 import pytest
 
-from tests import elsewhere, small
-from tests.sweeps.test_go import SETS, contents, here, made
+from tests import elsewhere
+from tests.sweeps.test_go import SETS, TEXT, contents, here, made
 from trsim.analyse.outputs import scalar
 from trsim.errors import FileError, UsageError
 from trsim.store.lock import writing
@@ -38,7 +38,7 @@ def shards(scenario, folder, n=2, keep="all"):
 @pytest.fixture(scope="module")
 def scenario(tmp_path_factory):
     path = tmp_path_factory.mktemp("scenario") / "crank.yaml"
-    path.write_text(small.SLIDER_CRANK)
+    path.write_text(TEXT)
     return path
 
 

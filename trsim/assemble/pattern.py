@@ -19,6 +19,7 @@ with) are eliminated after all hubs, when S_0 has become S.  hubs.py says which 
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 from heapq import heapify, heappop, heappush
 from typing import Any, NamedTuple
 
@@ -27,6 +28,7 @@ from numpy.typing import NDArray
 
 Indices = NDArray[np.int64]
 Rows = Sequence[tuple[int, ...]]  # frames that each row names, each once
+KEPT = 8  # of the last mechanisms: the start of a run assembles the same rows several times
 
 
 class Hubs(NamedTuple):
@@ -146,8 +148,15 @@ def structure(
     hubs: Hubs = Hubs(),  # noqa: B008 - nothing in it can change
 ) -> Structure:
     """Which unknowns meet, and in which order they are eliminated."""
+    return _structure(tuple(row_frames), n, tuple(beams or ()), hubs)
+
+
+@lru_cache(maxsize=KEPT)
+def _structure(
+    row_frames: tuple[tuple[int, ...], ...], n: int, beams: tuple[tuple[int, int], ...], hubs: Hubs
+) -> Structure:
     m, of_frame = len(row_frames), slots(row_frames, n)
-    spans = [of_frame[first : first + nodes] for first, nodes in beams or []]
+    spans = [of_frame[first : first + nodes] for first, nodes in beams]
     rigid = of_frame[: n - sum(map(len, spans))]
     of_body = [*rigid, *([slot for node in span for slot in node] for span in spans)]
     neighbours: list[set[int]] = [set() for _ in range(m + len(hubs.frames))]
@@ -195,7 +204,14 @@ def pattern(
 
     beams: first frame and number of nodes of each; they follow the rigid bodies.
     """
-    of_body, order, below = structure(row_frames, n, beams, hubs)
+    return {**_pattern(tuple(row_frames), n, tuple(beams or ()), hubs)}
+
+
+@lru_cache(maxsize=KEPT)
+def _pattern(
+    row_frames: tuple[tuple[int, ...], ...], n: int, beams: tuple[tuple[int, int], ...], hubs: Hubs
+) -> dict[str, Any]:
+    of_body, order, below = _structure(row_frames, n, beams, hubs)
     of_frame = slots(row_frames, n)
     columns = [[k, *under] for k, under in zip(order, below, strict=True)]
     row = [k for column in columns for k in column]

@@ -76,16 +76,16 @@ def _attributes(item: Any, digest: Any) -> None:
     for name in sorted(names):
         if name.decode() not in OWN:
             _say(digest, "attribute", name.decode())
-            digest.update(_bytes(_value(item, name)))
+            digest.update(_bytes(attribute(item, name)))
 
 
-def _value(item: Any, name: bytes) -> Any:
-    """The value of an attribute, as h5py gives it; most are texts."""
-    attribute = h5a.open(item, name)
-    kind = attribute.get_type()
-    if isinstance(kind, h5t.TypeStringID) and kind.is_variable_str() and attribute.shape == ():
+def attribute(item: Any, name: bytes) -> Any:
+    """The value of an attribute, as h5py gives it; most are texts, which may be bytes."""
+    opened = h5a.open(item, name)
+    kind = opened.get_type()
+    if isinstance(kind, h5t.TypeStringID) and kind.is_variable_str() and opened.shape == ():
         value = np.empty((), TEXT)
-        attribute.read(value)
+        opened.read(value)
         if isinstance(value[()], str | bytes):
             return value[()]
     high = h5py.Group if isinstance(item, h5g.GroupID) else h5py.Dataset

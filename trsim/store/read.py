@@ -20,7 +20,7 @@ from trsim.store.grow import LONGEST
 from trsim.store.peaks import Peak
 from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.points import Impacts, Points, between_bars, plain, split, stored
-from trsim.store.sound import Unsound, check_sound
+from trsim.store.sound import Group, Item, Unsound, check_sound
 from trsim.store.tables import MAY_BE_NAN
 
 FORMAT, VERSION = "trsim run", 1
@@ -244,17 +244,25 @@ def read(path: str | os.PathLike) -> Run:
     """Open a result file.  Raises FileError where there is none that can be read."""
     path = Path(path)
     with opened(path) as file:
-        _check(file, path)
-        channels = certificate.channels(file)
+        root = _check(file, path)
+        channels = {n: item for n, item in root.items() if isinstance(item, Item) and item.shape}
+        channels = {n: i for n, i in channels.items() if not n.startswith("component.")}
         return Run(
             path=path,
             attributes=plain(file.attrs),
-            units={name: str(d.attrs.get("units", "-")) for name, d in channels.items()},
-            sizes={name: d.shape[1] if d.ndim == 2 else 1 for name, d in channels.items()},
+            units={n: item.unit for n, item in channels.items() if n != "time"},
+            sizes={n: (*item.shape, 1)[1] for n, item in channels.items() if n != "time"},
             parts=_parts(file["mechanism"]),
             contacts=tuple(file["steps"]),
-            rows=_written([file["time"], *channels.values()]),
+            rows=_rows_of(file, channels),
         )
+
+
+def _rows_of(file: h5py.File, items: dict[str, Item]) -> int:
+    """The rows that all of some datasets have."""
+    if file.attrs["status"] == "running":
+        return _written([file[name] for name in items])
+    return min(item.shape[0] for item in items.values())
 
 
 def verify(path: str | os.PathLike) -> bool:
@@ -323,7 +331,8 @@ def _unreadable(path: Path, error: Exception) -> tuple[str, str]:
     return f"{path} {what}: {text[:200]}", hint
 
 
-def _check(file: h5py.File, path: Path) -> None:
+def _check(file: h5py.File, path: Path) -> Group:
+    """What is in the file of a result, which is refused where it is none."""
     if file.attrs.get("format") != FORMAT:
         hint = "A result file is written by `trsim run`."
         raise FileError(f"{path} is an HDF5 file, but not a result of trsim", hint)
@@ -333,7 +342,7 @@ def _check(file: h5py.File, path: Path) -> None:
     if version > VERSION:
         what = f"{path} has format {version}; this trsim reads up to {VERSION}"
         raise FileError(what, "Use a newer trsim.")
-    check_sound(file)
+    return check_sound(file)
 
 
 def _parts(group: h5py.Group) -> dict[str, Part]:

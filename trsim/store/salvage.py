@@ -57,29 +57,31 @@ class Salvage:
 
     def _table(self, source: h5py.Group, group: h5py.Group) -> None:
         """Copy the datasets with a time scale, as far as they are whole."""
-        names = [n for n, d in source.items() if isinstance(d, h5py.Dataset)]
-        names = ["time", *(n for n in names if n != "time" and not n.startswith("component."))]
-        for name in names:
-            _empty(source[name], group, name)
+        found = {n: d for n, d in source.items() if isinstance(d, h5py.Dataset)}
+        items = {"time": source["time"]}
+        items |= {n: d for n, d in found.items() if not n.startswith("component.")}
+        copies = {name: _empty(item, group, name) for name, item in items.items()}
+        names = {name: copied.name[1:] for name, copied in copies.items()}
         last, n = -np.inf, 0
         while True:
-            piece = _piece(source, names, n, last)
+            piece = _piece(items, source.name == "/", n, last)
             count = len(piece["time"])
-            for name, values in piece.items():
-                group[name].resize(n + count, axis=0)
-                group[name][n:] = values
-                if values.dtype.kind == "f" and count:
-                    self._extreme(group[name].name[1:], values, piece["time"])
+            for name, values in piece.items() if count else ():
+                copies[name].resize(n + count, axis=0)
+                copies[name][n:] = values
+                if values.dtype.kind == "f":
+                    self._extreme(names[name], values, piece["time"])
             n += count
             if count < ROWS:
                 break
             last = piece["time"][-1]
         self.rows[group.name] = n
-        group["time"].make_scale("time")
-        for name in names[1:]:
-            group[name].dims[0].attach_scale(group["time"])
-            if group[name].ndim == 2:
-                group[name].dims[1].attach_scale(self.file[AXES[group[name].shape[1]]])
+        time = copies.pop("time")
+        time.make_scale("time")
+        for copied in copies.values():
+            copied.dims[0].attach_scale(time)
+            if copied.ndim == 2:
+                copied.dims[1].attach_scale(self.file[AXES[copied.shape[1]]])
 
     def _extreme(self, name: str, values: Array, time: Array) -> None:
         table = values.reshape(len(values), -1)
@@ -138,28 +140,33 @@ class Salvage:
         }
 
 
-def _empty(item: h5py.Dataset, group: h5py.Group, name: str) -> None:
+def _empty(item: h5py.Dataset, group: h5py.Group, name: str) -> h5py.Dataset:
     """A dataset like `item`, without rows."""
     made = group.create_dataset(
         name, (0, *item.shape[1:]), maxshape=(None, *item.shape[1:]), chunks=item.chunks,
         dtype=item.dtype, fletcher32=True,
     )  # fmt: skip
     made.attrs.update({k: v for k, v in item.attrs.items() if k not in SCALE})
+    return made
 
 
-def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dict[str, Any]:
-    """The next rows that are whole in all datasets, at most ROWS."""
-    end = min(begin + ROWS, *(len(source[name]) for name in names), begin + ROWS)
+def _piece(
+    items: dict[str, h5py.Dataset], alone: bool, begin: int, last: float
+) -> dict[str, Any]:  # fmt: skip
+    """The next rows that are whole in all datasets, at most ROWS.
+
+    alone: no two rows are at one time.
+    """
+    end = min(begin + ROWS, *map(len, items.values()), begin + ROWS)
     piece: dict[str, Any] = {}
-    for name in names:
-        piece[name] = values = _readable(source[name], begin, end)
+    for name, item in items.items():
+        piece[name] = values = _readable(item, begin, end)
         end = begin + len(values)
     n = max(end - begin, 0)
     time = piece["time"][:n]
     later = np.diff(time, prepend=last)
     # of output rows no two are at one time; several events may happen at once, and be recorded, and
     # a step that ends at a corner may be shorter than the time resolves
-    alone = source.name == "/"
     n = _first(~(later > 0.0) if alone else ~(later >= 0.0), n)
     for name, values in piece.items():
         if name in MAY_BE_NAN:

@@ -13,6 +13,7 @@ import numpy as np
 from h5py import h5a, h5d, h5g, h5l, h5o, h5t
 
 from trsim.statuses import STATUSES
+from trsim.store.content import attribute
 from trsim.store.tables import AT_EVENTS
 
 ROOM = 1 << 26  # bytes a dataset may have without being in the file: rows that were made room for
@@ -41,6 +42,7 @@ class Item(NamedTuple):
 
     kind: str
     shape: tuple[int, ...]
+    unit: str
 
 
 class Group(dict[str, Any]):
@@ -70,9 +72,9 @@ class Group(dict[str, Any]):
             raise Unsound(f"the tables in {self.path} differ in length")
 
 
-def check_sound(file: h5py.File) -> None:
-    """Raises Unsound, or what h5py raises for a file that cannot be read."""
-    root = _Walk().group(file.id, "/", 0)
+def check_sound(file: h5py.File) -> Group:
+    """What is in a file.  Raises Unsound, or what h5py raises for a file that cannot be read."""
+    root = _Walk().group(file.id, "/", h5o.get_info(file.id).addr, 0)
     for name in GROUPS:
         if not isinstance(root.get(name), Group):
             raise Unsound(f"it has no group {name}")
@@ -80,6 +82,7 @@ def check_sound(file: h5py.File) -> None:
     _few(file, root)
     _tables(file, root)
     _points(file, root)
+    return root
 
 
 def printable(name: str) -> str:
@@ -95,13 +98,12 @@ class _Walk:
         self.seen: dict[int, Item] = {}  # by address: a dataset may have several names
         self.count = 0
 
-    def group(self, group: h5g.GroupID, path: str, depth: int) -> Group:
-        address = h5o.get_info(group).addr
+    def group(self, group: h5g.GroupID, path: str, address: int, depth: int) -> Group:
         if address in self.groups or depth > DEEPEST:
             raise Unsound(f"{printable(path)} is a group in itself")
         self.groups.add(address)
         found = Group(printable(path))
-        for coded in group:
+        for coded, link, address in _links(group):
             self.count += 1
             try:
                 name = coded.decode()
@@ -109,26 +111,30 @@ class _Walk:
                 raise Unsound("a name is no UTF-8") from None
             if self.count > MOST:
                 raise Unsound(f"it has more than {MOST} objects")
-            if group.links.get_info(coded).type != h5l.TYPE_HARD:
+            if link != h5l.TYPE_HARD:
                 raise Unsound(f"{printable(path + name)} is a link to another place")
+            if address in self.seen:
+                found[name] = self.seen[address]
+                continue
             item = h5o.open(group, coded)
             if isinstance(item, h5g.GroupID):
-                found[name] = self.group(item, f"{path}{name}/", depth + 1)
+                found[name] = self.group(item, f"{path}{name}/", address, depth + 1)
             elif isinstance(item, h5d.DatasetID):
-                found[name] = self.dataset(item, path + name)
+                found[name] = self.seen[address] = _item(item, path + name)
             else:
                 raise Unsound(f"{printable(path + name)} is neither a group nor a dataset")
         return found
 
-    def dataset(self, item: h5d.DatasetID, path: str) -> Item:
-        """Numbers or texts in one or two dimensions, inside the file."""
-        address = h5o.get_info(item).addr
-        if address not in self.seen:
-            self.seen[address] = _item(item, path)
-        return self.seen[address]
+
+def _links(group: h5g.GroupID) -> list[tuple[bytes, int, int]]:
+    """Names in a group, kinds of their links, and addresses of what these lead to."""
+    found: list[tuple[bytes, int, int]] = []
+    group.links.iterate(lambda name, info: found.append((name, info.type, info.u)), info=True)
+    return found
 
 
 def _item(item: h5d.DatasetID, path: str) -> Item:
+    """Numbers or texts in one or two dimensions, inside the file."""
     try:
         kind, shape = item.dtype, item.shape
     except (TypeError, ValueError):
@@ -144,10 +150,15 @@ def _item(item: h5d.DatasetID, path: str) -> Item:
         size *= n
     if size > ROOM and size > 2 * item.get_storage_size() + ROOM:
         raise Unsound(f"{printable(path)} says to have {shape[0]} rows, which are not in the file")
-    for key in (b"units", b"long_name"):
-        if h5a.exists(item, key) and not _is_text(h5a.open(item, key)):
-            raise Unsound(f"{printable(path)}: its {key.decode()} is no text")
-    return Item(TEXT if text else NUMBERS, shape)
+    unit: Any = attribute(item, b"units") if h5a.exists(item, b"units") else "-"
+    texts = {"units": isinstance(unit, str | bytes), "long_name": True}
+    if h5a.exists(item, b"long_name"):
+        texts["long_name"] = _is_text(h5a.open(item, b"long_name"))
+    for key, is_text in texts.items():
+        if not is_text:
+            raise Unsound(f"{printable(path)}: its {key} is no text")
+    unit = unit.decode("utf-8", "surrogateescape") if isinstance(unit, bytes) else unit
+    return Item(TEXT if text else NUMBERS, shape, unit)
 
 
 def _is_text(attribute: h5a.AttrID) -> bool:
