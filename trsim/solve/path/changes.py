@@ -386,6 +386,13 @@ def stability(eq: Equations, place: Place) -> tuple[float, float, Array | None]:
     return float(sign), value, np.asarray((Z @ vectors[:, k]).real)
 
 
+def side_of(sign: float, value: float) -> float:
+    """On which side of a change of stability a place is, by what `stability` finds there."""
+    if not np.isfinite(value):
+        return 2.0 * sign
+    return 1.0 if value > 0.0 else -1.0
+
+
 def null_space(J: Array, free: int) -> Array:
     """Columns that span what J does not see."""
     if not len(J):
