@@ -15,7 +15,7 @@ import pytest
 from ..runs import run
 from ..sizes import size
 
-# scenes; what the estimate of DOP853 does not see is met once or twice in as many of a joint or a seal
+# scenes: what the estimate of DOP853 does not see is met once or twice in as many
 N = {"dop853": size(120, 1000), "radau": size(40, 1000)}
 MU, G, K = 0.3, 10.0, 1e6
 DEEP = (G / K) ** (2 / 3)  # m: where K d^1.5 carries 1 kg
