@@ -193,8 +193,8 @@ def test_a_rod_that_may_spin_is_a_rigid_one():
     I = np.diag([0.01, 0.02, 0.02]) + c @ c * np.eye(3) - np.outer(c, c)
     I += mu / 3 * np.diag([0, 1, 1])
     weight = np.array([0, -9.81, 0])
-    R, w, h = np.eye(3), np.zeros(3), 1e-4
-    for _ in range(5000):  # midpoint rule, twice
+    R, w, h = np.eye(3), np.zeros(3), 1e-3
+    for _ in range(500):  # midpoint rule, twice
 
         def rate(R, w):
             down = R.T @ weight

@@ -196,7 +196,7 @@ def test_a_start_elsewhere_is_refused_where_rows_are_open_there():
 
 
 def test_a_run_that_was_broken_off_knows_what_was_open_before():
-    read = scenario(three_cranks(1e-6, end=1.0), "solver.max_step=1e-4")
+    read = scenario(three_cranks(3e-6, end=0.6), "solver.max_step=1e-4")
     whole = run(read).outcome
 
     def from_state(state):
@@ -251,8 +251,10 @@ def test_cranks_start_lying_flat(R, method):
     others hold on it: it used to start between the branches, with a book open by half."""
     parts = cranks((1, 1, 1), (0, 1.2, 2.5), 0.0, 0.0)
     planar = "true" if R is ORDINARY else "false"
-    ways = (f"solver.method={method}", "solver.tolerance=1e-7", "output.every=0.01", PLACES)
-    r = run(text(parts, "drives: {motor: {joint: F1, velocity: 3}}", R, planar=planar), *ways)
+    ways = (f"solver.method={method}", "solver.tolerance=1e-7", "solver.end=0.5")
+    rows = ("output.every=0.01", PLACES)
+    driven = "drives: {motor: {joint: F1, velocity: 3}}"
+    r = run(text(parts, driven, R, planar=planar), *ways, *rows)
     assert r.mechanism.mobility == 0
     assert len(r.mechanism.redundant) == (1 if planar == "true" else 7)
     way = (r["plate.position"] - r["plate.position"][0]) @ R

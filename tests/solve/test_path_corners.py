@@ -141,7 +141,7 @@ contact_laws:
   k: {normal: impact, stiffness: 1e8, exponent: 1.5, damping: 10, ramp: 0.01 mm,
       friction: {law: modified_coulomb, coefficient: 0.1, v0: 0, v1: 1e-4}}
 events: {here: {when: x, value: AT, do: {record: true}}}
-solver: {method: static_path, end: 1 s}
+solver: {method: static_path, end: 0.6 s}
 output: {every: 0.1}
 """
 

@@ -71,7 +71,7 @@ forces:
 contact_laws:
   k: {normal: impact, stiffness: 1e8, exponent: 1.5, damping: 10, ramp: 0.01 mm,
       friction: {law: modified_coulomb, coefficient: 0.2, v0: 0, v1: 1e-4}}
-solver: {method: static_path, end: 1 s}
+solver: {method: static_path, end: 0.7 s}
 output: {every: EVERY}
 """
 

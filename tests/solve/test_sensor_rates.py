@@ -46,7 +46,8 @@ def test_a_damper_of_one_way(method):
     w, d = math.sqrt(k / m), c / (2 * m)
     damped = math.sqrt(w * w - d * d)
     # from rest at x = 1 inwards for half a damped swing, and back out for half a free one
-    r = slide('"-200*(stroke - 1) - 8*min(stroke.rate, 0)"', 0.0, 2, method)
+    loose = method.replace("1e-8", "1e-7") if "alpha" in method else method
+    r = slide('"-200*(stroke - 1) - 8*min(stroke.rate, 0)"', 0.0, 2, loose)
     ratio = math.exp(-d * math.pi / damped)
     x, t, at = -1.0, 0.0, r.t
     expected = np.zeros_like(at)

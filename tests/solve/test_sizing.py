@@ -24,7 +24,7 @@ forces:
 sizing: {drive: motor, load: forces.hand.force, of: turn, below: 1e-9, passes: 8}
 gravity: [0, -9.81, 0]
 solver: {method: static_path, end: 1 s}
-output: {every: 20 ms}
+output: {every: 50 ms}
 """
 RUB = """
   rub: {type: joint_friction, joint: hinge, radius: 30 mm,

@@ -15,7 +15,8 @@ import pytest
 from ..runs import run
 from ..sizes import size
 
-N = size(120, 1000)
+# scenes: what the estimate of DOP853 does not see is met once or twice in as many
+N = {"dop853": size(120, 1000), "radau": size(40, 1000)}
 MU, G, K = 0.3, 10.0, 1e6
 DEEP = (G / K) ** (2 / 3)  # m: where K d^1.5 carries 1 kg
 LAW = "friction: {{law: modified_coulomb, coefficient: 0.3, v0: 0, v1: {v1!r}}}"
@@ -69,7 +70,7 @@ def test_friction_never_turns_round(scene, method):
     """A step may err by 10 % of friction at 0.01 and by less than 10 tolerances below: 50 leave
     room for some."""
     rng, off = np.random.default_rng(5), []
-    for _ in range(N):
+    for _ in range(N[method]):
         tolerance, v1 = 10 ** rng.uniform(-6, -2), 10 ** rng.uniform(-4, -1)
         v = max(10 ** rng.uniform(-1, 1), 3 * v1)
         late = rng.uniform(2, 20)  # decays after the corner

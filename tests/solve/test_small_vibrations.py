@@ -16,12 +16,14 @@ from trsim.solve.diagnose.doubts import doubts
 
 from ..overconstrained import METHODS
 from ..runs import run
-from ..sizes import size
+from ..sizes import RELEASE, size
 
-SEEDS = size(60, 4000)
-FAINT_SEEDS = size(60, 260)
+SEEDS = size(30, 4000)
+FAINT_SEEDS = size(30, 260)
 SLOW = ("scipy:BDF", "scipy:Radau")  # Newton's method in Python
-SLOW_SEEDS = size(30, 4000)  # 3, 21 and 24 were off with the largest steps that scipy takes alone
+# methods of scipy are slow: 3, 21 and 24 were off with the largest steps that they take alone
+SCIPY = (3, 9, 15, 21, 24, 27)
+SLOW_SEEDS = size(30, 4000)
 TOGETHER = 30  # in one test
 TOLD, SILENT = (
     10.0,
@@ -133,10 +135,15 @@ def off_of(r, axis, ways, exact):
     for first in range(0, SLOW_SEEDS if method in SLOW else SEEDS, TOGETHER)
 ])  # fmt: skip
 def test_a_small_vibration_beside_a_larger_motion(method, first):
-    every = size(3, 1) if "scipy" in method else 1  # with those of SLOW_SEEDS
-    worst = {seed: off(seed, method) for seed in range(first, first + TOGETHER, every)}
+    seeds = range(first, first + TOGETHER)
+    if "scipy" in method and not RELEASE:
+        seeds = [seed for seed in SCIPY if seed in seeds]
+    worst = {seed: off(seed, method) for seed in seeds}
     wrong = {seed: x for seed, x in worst.items() if not x.max() < ALLOWED}
     assert not wrong
+
+
+LONG = (43, 51)  # seeds that take scipy's method 2 s: it sees a quarter of their time
 
 
 # seeds that were off by up to 384 tolerances while errors were the mean of all bodies
@@ -150,7 +157,9 @@ def test_bodies_at_rest_beside_change_nothing(method, seed):
     )
     text = text.replace("joints:\n", rest + "joints:\n")
     text = text.replace("output: {", "output: {channels: ['slow.*', 'fast.*'], ")
-    assert off_of(run(text, *by(method)), *true).max() < ALLOWED
+    part = size(4, 1) if method in SLOW and seed in LONG else 1
+    end = float(re.search("end: ([^,}]*)", text)[1]) / part
+    assert off_of(run(text, *by(method), f"solver.end={end}"), *true).max() < ALLOWED
 
 
 def doubted(r):

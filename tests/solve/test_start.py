@@ -383,7 +383,7 @@ solver: {{end: 0.1}}
     ["initial: {{pin: {}}}", 'drives: {{motor: {{joint: pin, position: "{} + 0*t"}}}}'],
     ids=["initial", "drive"],
 )
-@pytest.mark.parametrize("place", [3.3, 20.0, -100.0, 250.0])
+@pytest.mark.parametrize("place", [3.3, 20.0, -100.0, 45.0])
 def test_a_start_on_any_turn(place, more, planar):
     """Angles of joints count turns; alone, and in a linkage that goes round."""
     r = run(CRANKED.format(planar=planar, more=more.format(place)))

@@ -61,10 +61,10 @@ forces:
 
 def test_a_block_dragged_by_a_spring_sticks_and_slides():
     """The play of a spring with dry friction: it sticks while the spring is turned round."""
-    r = path(DRAGGED, end=2.0, every=5e-3)
-    assert r.outcome.statistics["rejected_steps"] < 30
+    r = path(DRAGGED, end=1.0, every=5e-3)
+    assert r.outcome.statistics["rejected_steps"] < 15
     f = 0.3 * 2 * G / 200
-    fine = np.linspace(0, 2, 40_001)
+    fine = np.linspace(0, 1, 4_001)
     block = [0.0]
     for x in 0.1 * np.sin(2 * np.pi * fine[1:]):
         block.append(min(max(block[-1], x - f), x + f))
@@ -115,7 +115,7 @@ LEAD = np.arctan(6e-3 / (2 * np.pi * 10e-3))
 
 def test_a_thread_that_is_pushed():
     """F r tan(lead - rho) = T, as long as friction lets it: tan(rho) = mu."""
-    r = path(THREAD.replace("MU", "0.05"))
+    r = path(THREAD.replace("MU", "0.05"), end=0.3)
     torque = 0.01 * r.t * 2 * np.pi / 6e-3
     pushed = torque / (10e-3 * np.tan(LEAD - np.arctan(0.05))) + G
     assert r["ram.force"][1:] == pytest.approx(pushed[1:], rel=1e-6)
@@ -185,19 +185,24 @@ forces:
   rub: {type: joint_friction, joint: sleeve, radius: 20 mm, friction: {LAW}}
   weight: {type: applied_load, body: shaft, at: [0, 0, 0], direction: ACROSS, force: 30}
 gravity: [0, 0, 0]
-solver: {method: static_path, end: 1}
+solver: {method: static_path, end: END}
 output: {every: 0.053, channels: ["*"]}
 """
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law, end", [(LAWS[0], 1), (LAWS[1], 0.4)])
 @pytest.mark.parametrize("bodies, side", [("ground, shaft", 1), ("shaft, ground", -1)])
 @pytest.mark.parametrize("axis", [(1, 0, 0), (0.48, -0.8, 0.36)])
-def test_friction_of_a_sleeve_is_along_its_helix(law, bodies, side, axis):
+def test_friction_of_a_sleeve_is_along_its_helix(law, end, bodies, side, axis):
     """N mu along the stroke by v / |(v, r w)|, and r N mu about it by r w: the helix turns all the
     way round as both drives go to and fro; 30 N across press it."""
     across = np.cross(axis, [0.2, 0.3, 0.9]).tolist()
-    text = TWO_WAYS.replace("LAW", law).replace("BODIES", bodies).replace("AXIS", str(list(axis)))
+    text = (
+        TWO_WAYS.replace("END", str(end))
+        .replace("LAW", law)
+        .replace("BODIES", bodies)
+        .replace("AXIS", str(list(axis)))
+    )
     r = run(text.replace("SIGN", str(side)).replace("ACROSS", str(across)))
     v = 0.05 * 2 * np.pi * np.cos(2 * np.pi * r.t)
     u = 0.02 * 2 * 2 * np.pi * np.sin(2 * np.pi * r.t)

@@ -67,7 +67,9 @@ def test_a_locked_joint(when, method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_what_a_guide_holds_at_zero(method):
-    r = run(GUIDED.format(method=method + METHODS[method]))
+    # of second order, which takes 100,000 steps at 1e-7
+    loose = ("solver.tolerance=1e-6",) if method == "generalized_alpha" else ()
+    r = run(GUIDED.format(method=method + METHODS[method]), *loose)
     across, along, said = r.section("across"), r.section("along"), told(r)
     assert len(along) > 10
     assert "along" not in said

@@ -25,6 +25,7 @@ from ..sizes import size
 
 M, G = 1.0, np.array([0.0, 0.0, -9.81])
 LARGE = 3.0
+TURNED = size(30, 60)  # rad, by the small one in a drawn scene
 # all that is compared: extremes of forces, which are chance at flat places, are sought for long
 MOTION = "output.channels=['*.velocity', '*.angular_velocity']"
 
@@ -83,7 +84,7 @@ def drawn(seed):
     l = 10.0 ** rng.uniform(-3, -1)
     turns = [Rotation.random(random_state=int(k)).as_matrix() for k in rng.integers(1e6, size=2)]
     rate, theta = rng.uniform(1.5, 15.0) / np.sqrt(l), rng.uniform(-0.3, 0.3)
-    return scene(l, theta, rate, turns, min(2.0, 60.0 / rate), 10.0 ** rng.uniform(-8, -6))
+    return scene(l, theta, rate, turns, min(2.0, TURNED / rate), 10.0 ** rng.uniform(-8, -6))
 
 
 def slow(end):

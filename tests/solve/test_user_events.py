@@ -93,7 +93,7 @@ def test_every_method_finds_all_crossings(method, bound):
     """x = 0.1 sin(10 t) crosses 0.05 upwards at (pi/6 + 2 pi k) / 10."""
     text = SWING.replace("end: 1,", f"end: 3, {method},")
     if "generalized_alpha" in method:  # of second order
-        text = text.replace("1e-10", "1e-8")
+        text = text.replace("1e-10", "1e-7")
     r = run(text + "  half: {when: x, value: 50 mm, do: {record: true}}")
     expected = (pi / 6 + 2 * pi * np.arange(5)) / 10
     assert user(r)[:, EVENT_TIME] == pytest.approx(expected, abs=bound)
@@ -111,7 +111,7 @@ def test_every_method_goes_on_with_other_equations(method, bound):
 """
     )
     if "generalized_alpha" in method:  # of second order
-        text = text.replace("1e-10", "1e-9")
+        text = text.replace("1e-10", "1e-8")
     r = run(text)
     t = r.t
     held, free = (t > pi / 60 + 1e-9) & (t < 0.3), t > 0.3
@@ -601,13 +601,15 @@ def test_what_is_unlocked_at_the_value_is_on_neither_side_of_it(tolerance, metho
 
     Where Newton's method came no nearer to the value than 2e-15, 1e-12 of the interpolant served.
     """
-    free = "go: {when: t, value: 9, do: {unlock: [elbow]}}"
-    scene = SHAKEN.replace("{catch:", "{" + free + ", catch:")
-    tolerance *= 1.0 if method != "generalized_alpha" else 1e3  # of second order
+    go, again, end = (9, 9.08796, 10)
+    if method == "generalized_alpha":  # of second order
+        tolerance, (go, again, end) = 1e3 * tolerance, (3, 3.185661, 4)
+    free = f"go: {{when: t, value: {go}, do: {{unlock: [elbow]}}}}"
+    scene = SHAKEN.replace("{catch:", "{" + free + ", catch:").replace("end: 10", f"end: {end}")
     r = run(scene, f"solver.tolerance={tolerance}", f"solver.method={method}")
     first, _, second = r.events
-    assert second[EVENT_TIME] == pytest.approx(9.08796, abs=1e4 * tolerance)
-    held = r["bend"][(r.t > first[EVENT_TIME]) & (r.t < 9.0)]
+    assert second[EVENT_TIME] == pytest.approx(again, abs=1e4 * tolerance)
+    held = r["bend"][(r.t > first[EVENT_TIME]) & (r.t < go)]
     assert held == pytest.approx(0.1, abs=rounded(first))
     assert r["bend"][-1] == pytest.approx(0.1, abs=rounded(second))
 

@@ -66,7 +66,7 @@ def stroke(load, method, tolerance, end=1.0, drive=None, axis="[1, 0, 0]", every
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("load", LOADS)
 def test_work_of_a_load_along_a_driven_stroke(load, method):
-    tolerance = 1e-4 if method == "generalized_alpha" else 1e-6
+    tolerance = {"generalized_alpha": 1e-4, "scipy:Radau": 1e-5}.get(method, 1e-6)
     r, work = stroke(load, method, tolerance)
     allowed = ROUGH.get(method, 3.0) * tolerance * abs(work)
     assert r["energy.work.loads"][-1] == pytest.approx(work, abs=allowed)

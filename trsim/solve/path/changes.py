@@ -260,16 +260,18 @@ class Looks:
         if not eq.mechanism.timed:
             return False
         left, rates = [], []
+        unit = np.asarray(eq.work.row_unit)[: eq.m]
         for k in range(WITHIN + 1):
             t = a.t + k / WITHIN * (b.t - a.t)
             g = eq.left(t, eq.at_time(b.y, b.t, t), b.lam)
-            off = np.abs(g[eq.n :]) / np.asarray(eq.work.row_unit)[: eq.m]
-            left.append((float(off.max(initial=0.0)), eq.relative(g)))
-            rates.append(np.sign(eq.work.phi_t[: eq.m]))
-        signs = np.array(rates)
-        back = (signs[0] == signs[-1]) & (signs[0] != 0.0) & np.any(signs == -signs[0], axis=0)
-        if eq.rubs and back.any():
-            return True
+            left.append((float((np.abs(g[eq.n :]) / unit).max(initial=0.0)), eq.relative(g)))
+            if eq.rubs:
+                rates.append(np.sign(eq.work.phi_t[: eq.m]))
+        if eq.rubs:
+            signs = np.array(rates)
+            there = (signs[0] == signs[-1]) & (signs[0] != 0.0)
+            if np.any(there & np.any(signs == -signs[0], axis=0)):
+                return True
         (way, force), *between = left
         return any(x > way + AWAY or f > force + ASKED for x, f in between)
 
@@ -384,6 +386,13 @@ def stability(eq: Equations, place: Place) -> tuple[float, float, Array | None]:
     if abs(value) < FLAT * np.abs(values).max() and len(values) > 1:
         value = 0.0
     return float(sign), value, np.asarray((Z @ vectors[:, k]).real)
+
+
+def side_of(sign: float, value: float) -> float:
+    """On which side of a change of stability a place is, by what `stability` finds there."""
+    if not np.isfinite(value):
+        return 2.0 * sign
+    return 1.0 if value > 0.0 else -1.0
 
 
 def null_space(J: Array, free: int) -> Array:

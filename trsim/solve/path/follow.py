@@ -25,7 +25,7 @@ from trsim.solve.march.features import next_time
 from trsim.solve.outcome import Block, Outcome, settings
 from trsim.solve.path.begin import begin, check
 from trsim.solve.path.between import Between
-from trsim.solve.path.changes import RUB, WATCH, Change, Looks, bottoms, stability
+from trsim.solve.path.changes import RUB, WATCH, Change, Looks, bottoms, side_of, stability
 from trsim.solve.path.fold import fold
 from trsim.solve.path.headings import (
     CLOSE_AHEAD,
@@ -277,7 +277,8 @@ class Path:
 
     def changed(self, place: Place) -> list[Change]:
         out = self.results.out(place, 0.0 * place.v) if self.hears else None
-        return self.looks.changes(place, out, self.sense(place))
+        sign, value, _ = stability(self.eq, place)
+        return self.looks.changes(place, out, side_of(sign, value))
 
     def looked_inside(self, place: Place, trial: Place) -> tuple[Place, list[Change]] | None:
         """The first place inside a step at which a channel has passed what an event watches it
@@ -445,17 +446,10 @@ class Path:
         if at_row:
             self.next_row = row + 1
 
-    def sense(self, place: Place) -> float:
-        """On which side of a change of stability a place is."""
-        sign, value, _ = stability(self.eq, place)
-        if not np.isfinite(value):
-            return 2.0 * sign
-        return 1.0 if value > 0.0 else -1.0
-
     def judge(self, place: Place) -> None:
         """Take the lowest eigenvalue."""
-        _, value, _ = stability(self.eq, place)
-        self.looks.sense = self.sense(place)
+        sign, value, _ = stability(self.eq, place)
+        self.looks.sense = side_of(sign, value)
         if np.isfinite(value) and value < self.lowest[0]:
             self.lowest = value, place.t
 
