@@ -122,7 +122,7 @@ def test_a_run_says_when_it_changed_its_branch_and_only_then(scene, method, R):
     drawn, branches = scene
     wrong = 0
     for k, longer in enumerate((1e-9, 1e-8, 1e-7, 1e-6, 1e-5, -1e-8, -1e-6, -1e-9)):
-        for tolerance in TOLERANCES if RELEASE else TOLERANCES[k % 3 :: 3]:
+        for tolerance in TOLERANCES if RELEASE else TOLERANCES[k % 3 :: 3][: 1 + (k == 0)]:
             made, sets = drawn(longer, R)
             ways = (f"solver.method={method}", f"solver.tolerance={tolerance}")
             r = run(made, *sets, *ways, MOTION, SHORTER[drawn], fails=None)
