@@ -319,7 +319,7 @@ joints:
   tie: %s
 planar: %s
 gravity: [1, -9.81, 0]
-solver: {end: 0.1, tolerance: 1e-7}
+solver: {end: 0.05, tolerance: 1e-7}
 output: {channels: ["*"], every: 0.01}
 """
 ARC = "curve: {at: [1, 0], x: 0.3*sin(s), y: -0.3*cos(s), range: [-2, 2]}"

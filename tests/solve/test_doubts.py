@@ -10,7 +10,8 @@ import pytest
 from tests.small import SLIDER_CRANK
 from trsim.assemble.assemble import assemble
 from trsim.elements.contract import STORED
-from trsim.scenario.load import load, loads
+from trsim.scenario.expand import expand
+from trsim.scenario.load import loads, of_tree
 from trsim.solve.diagnose.doubts import doubts, of_start, of_waves
 from trsim.solve.start.consistent import start
 from trsim.solve.start.projected import projected
@@ -87,10 +88,12 @@ def test_check_tells_the_change_of_two_guides():
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_the_scenarios_start_as_given(path):
-    scenario = load(path)
-    if scenario.cases and not scenario.bodies:  # a study of other scenarios
-        planned = plan(str(path))
+    tree, text = expand(path)  # once: a study of other scenarios extends many files
+    if tree.data.get("cases") and not tree.data.get("bodies"):
+        planned = plan(str(path), read=lambda _: (tree, text))
         scenario = planned.scenario(planned.cases[0])
+    else:
+        scenario = of_tree(tree, text)
     m = assemble(scenario)
     assert list(of_start(scenario, m, start(scenario, m, True))) == []
 
