@@ -15,8 +15,8 @@ class Within:
     def __init__(self, wanted: Any, rel: float | None, abs: float | None) -> None:
         self.plain = pytest.approx(wanted, rel=rel, abs=abs)
         self.wanted = np.asarray(wanted)
-        part = (1e-6) if rel is None else rel
-        self.allowed = np.minimum(part * np.abs(self.wanted), 1e-12 if abs is None else abs)
+        part = (1e-6 if abs is None else 0.0) if rel is None else rel
+        self.allowed = np.maximum(part * np.abs(self.wanted), 1e-12 if abs is None else abs)
 
     def __eq__(self, found: object) -> bool:
         given = np.asarray(found)
