@@ -10,6 +10,7 @@ from scipy.special import ellipk
 
 from trsim.analyse.trajectory import changed
 from trsim.scenario.load import load
+from trsim.solve.diagnose.doubts import of_start
 from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, EVENT_WORK, USER
 from trsim.solve.sizing import sized
 from trsim.statuses import WELL
@@ -34,7 +35,8 @@ BY_ROWS = ("static_latch", "static_truss")  # their books of energy are as good 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: f"{p.parent.name}/{p.stem}")
 def test_runs_for_a_while(path):
-    """A tenth of the long runs, all of the short ones.  A row of a static path is a step."""
+    """A tenth of the long runs, all of the short ones, from the start that is given.  A row of a
+    static path is a step."""
     scenario = load(path)
     end = scenario.solver.end
     long = path.parent.name in ("thrust_reverser", "crew_door") or path.stem in LONG
@@ -46,6 +48,7 @@ def test_runs_for_a_while(path):
     assert r.outcome.status in WELL
     assert np.isfinite(r.rows).all()
     assert energy_error(r) < 1e-4
+    assert list(of_start(r.scenario, r.mechanism, r.outcome.start)) == []
 
 
 def test_conical_pendulum():

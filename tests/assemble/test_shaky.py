@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trsim.assemble.shaky import definite
+from trsim.assemble.shaky import definite, none_is
 from trsim.errors import ModelError
 
 from .. import sizes
@@ -167,3 +167,27 @@ def test_what_is_definite_is_so_in_any_unit(size):
     assert definite(one) is not None
     assert definite(-one) is not None
     assert definite(size * np.array([np.diag([1.0, -1.0, 3.0])])) is None
+
+
+def test_what_is_proved_not_to_be_there():
+    """Of two motions always: of all forms of a span one has the largest determinant."""
+    rng = np.random.default_rng(5)
+    proved = 0
+    for _ in range(300):
+        many = rng.integers(1, 3)
+        forms = rng.normal(size=(many, 2, 2))
+        forms = forms + forms.transpose(0, 2, 1)
+        more = np.einsum("vw,wij->vij", rng.normal(size=(4, many)), forms)  # of the same span
+        angle = np.linspace(0.0, np.pi, 2000)
+        a, b = (forms if many == 2 else forms[[0, 0]])[:2]
+        total = np.cos(angle)[:, None, None] * a + np.sin(angle)[:, None, None] * b
+        there = (np.linalg.det(total) / np.linalg.norm(total, axis=(1, 2)) ** 2).max()
+        if abs(there) > 0.01:
+            proved += none_is(more)
+            assert none_is(more) == (there < 0.0)
+            assert there > 0.0 or definite(more) is None
+    assert 50 < proved < 250
+    assert none_is(np.array([np.diag([1.0, -1.0, 0.0]), np.diag([0.0, 1.0, -1.0])]))
+    assert not none_is(np.array([np.diag([1.0, -1.0, 0.0]), np.diag([0.0, 1.0, 1.0])]))
+    assert none_is(np.array([np.diag([1.0, 0.0])]))
+    assert not none_is(np.array([np.diag([1.0, 0.0]), np.diag([0.0, 1.0])]))

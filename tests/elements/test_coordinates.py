@@ -10,6 +10,7 @@ import pytest
 from trsim import elements
 from trsim.errors import TrsimError
 
+from ..comparing import approx
 from ..runs import built, energy_error, run
 
 AXIS, AT = np.array([0.48, 0.6, 0.64]), [0.2, 0.1, -0.3]
@@ -77,8 +78,8 @@ def of_unit(case, angle, stroke):
 def test_it_is_driven(case):
     r = run(scene(case, "drives: {d: {joint: OF, velocity: 1.5*cos(9*t)}}"))
     x = r["x"]
-    assert x == pytest.approx(x[0] + 1.5 / 9 * np.sin(9 * r.t), abs=1e-7)
-    assert r["d.position"] == pytest.approx(x, abs=1e-7)
+    assert x == approx(x[0] + 1.5 / 9 * np.sin(9 * r.t), abs=1e-7)
+    assert r["d.position"] == approx(x, abs=1e-7)
     assert np.abs(r["d.force"]).max() > 0.1
     assert energy_error(r) < 1e-6
 
@@ -88,7 +89,7 @@ def test_it_is_pulled_through_a_compliance(case):
     unit = of_unit(case, "N*m/rad", "N/m")
     more = f"drives: {{d: {{joint: OF, velocity: 0.5, compliance: {{stiffness: 200 {unit}}}}}}}"
     r = run(scene(case, more))
-    assert r["d.force"] == pytest.approx(-200 * (r["x"] - r["x"][0] - 0.5 * r.t), abs=1e-6)
+    assert r["d.force"] == approx(-200 * (r["x"] - r["x"][0] - 0.5 * r.t), abs=1e-6)
     assert energy_error(r) < 1e-6
 
 
@@ -101,8 +102,8 @@ events:
 """
     r = run(scene(case, more))
     held = (r.t > 0.2) & (r.t < 0.4)
-    assert r["x"][held] == pytest.approx(r["x"][held][0], abs=1e-8)
-    assert r["x.rate"][held] == pytest.approx(0, abs=1e-7)
+    assert r["x"][held] == approx(r["x"][held][0], abs=1e-8)
+    assert r["x.rate"][held] == approx(0, abs=1e-7)
     several = len(JOINTS[case[0]].coordinates) > 1
     force = r[f"joint.{case[1]}.lock.force" if several else "joint.lock.force"]
     # of planes and what flies its weight turns nothing
@@ -116,9 +117,9 @@ events:
 def test_its_joint_is_released(case):
     r = run(scene(case, "events: {off: {when: t, value: 0.2, do: {release: [joint]}}}"))
     free = r.t > 0.2
-    assert r["joint.reaction"][free] == pytest.approx(0, abs=0)
+    assert r["joint.reaction"][free] == approx(0, abs=0)
     weight = np.array([1.0, -3.0, 2.0])
-    assert r["body.acceleration"][free] == pytest.approx(weight + 0 * r["body.velocity"][free])
+    assert r["body.acceleration"][free] == approx(weight + 0 * r["body.velocity"][free])
     held = "reaction_moment" if case[0] == "parallel" else "reaction"
     if case[:2] != ("parallel", "stroke"):  # which holds nothing here, as nothing turns
         assert np.abs(r[f"joint.{held}"][~free]).max() > 1e-3
@@ -137,7 +138,7 @@ drives: {{push: {{joint: OF, velocity: 1.5, compliance: {{stiffness: 500}}}}}}
     r = run(scene(case, more))
     assert upper - 0.01 < r["x"].max() < upper + 0.04
     assert r["stop.normal_force"].max() > 1.0
-    assert r["stop.penetration"] == pytest.approx(r["x"] - upper, abs=1e-9)
+    assert r["stop.penetration"] == approx(r["x"] - upper, abs=1e-9)
     assert energy_error(r) < 1e-5
 
 
@@ -153,7 +154,7 @@ forces: {{s: {{type: torsion_spring, joint: OF, stiffness: {k}, damping: {c}, pr
     channel = r[of_unit(case, "s.torque", "s.force")]
     damping = float(c.split()[0])
     wanted = 2 - number * (r["x"] - r["x"][0]) - damping * r["x.rate"]
-    assert channel == pytest.approx(wanted, abs=1e-9)
+    assert channel == approx(wanted, abs=1e-9)
     assert r["energy.work.dampers"][-1] < -1e-3
     assert energy_error(r) < 1e-6
 
@@ -184,7 +185,7 @@ forces: {{f: {{type: joint_friction, joint: OF, {sizes}constant: {constant},
     full = (np.abs(speed) > 0.01) & (r.t > 0.03)
     wanted = -np.sign(speed) * (0.1 * load * gear + np.sign(gear) * float(constant.split()[0]))
     assert full.sum() > 10 and load.max() > 0.01
-    assert force[full] == pytest.approx(wanted[full], rel=1e-6 if law == "sticking" else 1e-9)
+    assert force[full] == approx(wanted[full], rel=1e-6 if law == "sticking" else 1e-9)
     assert r["energy.work.friction"][-1] < -1e-3
     assert energy_error(r) < 1e-5
 
@@ -194,7 +195,7 @@ def test_it_begins_where_it_is_told_in_its_own_unit(case):
     value = of_unit(case, "20 deg", "30 mm")
     text = scene(case, "").replace(".rate: 1.5}", f": {value}}}").replace("end: 0.5", "end: 0.01")
     r = run(text)
-    assert r["x"][0] == pytest.approx(of_unit(case, np.deg2rad(20), 0.03), abs=1e-9)
+    assert r["x"][0] == approx(of_unit(case, np.deg2rad(20), 0.03), abs=1e-9)
     with pytest.raises(TrsimError, match="unit") as caught:
         built(text.replace(value, of_unit(case, "30 mm", "20 deg")))
     assert caught.value.path[0] == "initial"

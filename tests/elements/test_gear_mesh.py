@@ -1,6 +1,7 @@
 """Gear mesh: vibration and rattling of teeth against closed forms and an integrator of its own."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -49,6 +50,7 @@ def test_wheels_without_play_vibrate(internal, changes):
     assert energy_error(r) < 1e-9
 
 
+@cache
 def rattled(c, b, v, end):
     """x(t) of one mass between two flanks, by scipy."""
 

@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 from trsim.errors import TrsimError
 from trsim.solve.diagnose.doubts import doubts
 
+from ..comparing import approx
 from ..runs import built, energy_error, run
 
 G = 9.81
@@ -71,10 +72,10 @@ def test_a_block_slides_on_an_incline(method, speed):
     r = run(block(speed, solver=solver))
     N = 2 * G * np.cos(SLOPE)
     a = -G * np.sin(SLOPE) - np.sign(speed) * 0.2 * N / 2
-    assert r["s"] == pytest.approx(speed * r.t + a * r.t**2 / 2, abs=error)
-    assert r["rub.normal_force"] == pytest.approx(N, rel=1e-9)
-    assert r["rub.force"] == pytest.approx(-np.sign(speed) * 0.2 * N, rel=1e-9)
-    assert r["energy.work.friction"][-1] == pytest.approx(-0.2 * N * abs(r["s"][-1]), rel=1e-5)
+    assert r["s"] == approx(speed * r.t + a * r.t**2 / 2, abs=error)
+    assert r["rub.normal_force"] == approx(N, rel=1e-9)
+    assert r["rub.force"] == approx(-np.sign(speed) * 0.2 * N, rel=1e-9)
+    assert r["energy.work.friction"][-1] == approx(-0.2 * N * abs(r["s"][-1]), rel=1e-5)
     assert energy_error(r) < max(error, 1e-9)
 
 
@@ -83,12 +84,12 @@ def test_a_block_sticks_on_an_incline():
     r = run(block(0.0, 0.6, text=STICKS, end=3.0, solver="tolerance: 1e-8"))
     hold = 2 * G * np.sin(SLOPE)
     assert np.abs(r["s"]).max() < 6 * np.tan(SLOPE) / 1e5
-    assert r["rub.force"][-1] == pytest.approx(hold, rel=1e-6)
+    assert r["rub.force"][-1] == approx(hold, rel=1e-6)
     assert np.abs(r["s.rate"][-1]) < 1e-8
     r = run(block(0.0, 0.5, text=STICKS, end=1.0, solver="tolerance: 1e-8"))
     a = -G * (np.sin(SLOPE) - 0.5 * np.cos(SLOPE))
-    assert r["s"][-1] == pytest.approx(a / 2, rel=0.03)  # full when the bristles are bent
-    assert np.polyfit(r.t[500:], r["s.rate"][500:], 1)[0] == pytest.approx(a, rel=1e-6)
+    assert r["s"][-1] == approx(a / 2, rel=0.03)  # full when the bristles are bent
+    assert np.polyfit(r.t[500:], r["s.rate"][500:], 1)[0] == approx(a, rel=1e-6)
 
 
 def test_a_constant_friction():
@@ -96,11 +97,11 @@ def test_a_constant_friction():
     for mu in (0.0, 0.2):
         r = run(block(3.0, mu, ", constant: 3 N"))
         a = -G * np.sin(SLOPE) - mu * G * np.cos(SLOPE) - 3 / 2
-        assert r["s"] == pytest.approx(3 * r.t + a * r.t**2 / 2, abs=1e-8)
+        assert r["s"] == approx(3 * r.t + a * r.t**2 / 2, abs=1e-8)
     for mu in (0.0, 0.2):
         r = run(wheel(mu, ", constant: 0.05 N*m"))
         slower = (0.012 * mu * 3 * G + 0.05) / 0.02
-        assert r["turn.rate"] == pytest.approx(20 - slower * r.t, abs=1e-7)
+        assert r["turn.rate"] == approx(20 - slower * r.t, abs=1e-7)
 
 
 # --- hinges ---------------------------------------------------------------------------------------
@@ -128,9 +129,9 @@ output: {{channels: ["*"]}}
 def test_a_journal_slows_a_wheel(method):
     solver, error = METHODS[method]
     r = run(wheel(solver=solver))
-    assert r["turn.rate"] == pytest.approx(20 - 0.012 * 0.2 * 3 * G / 0.02 * r.t, abs=20 * error)
-    assert r["rub.force"] == pytest.approx(-0.012 * 0.2 * 3 * G, rel=1e-8)
-    assert r["rub.sliding_speed"] == pytest.approx(0.012 * r["turn.rate"], rel=1e-9)
+    assert r["turn.rate"] == approx(20 - 0.012 * 0.2 * 3 * G / 0.02 * r.t, abs=20 * error)
+    assert r["rub.force"] == approx(-0.012 * 0.2 * 3 * G, rel=1e-8)
+    assert r["rub.sliding_speed"] == approx(0.012 * r["turn.rate"], rel=1e-9)
 
 
 @pytest.mark.parametrize("axis", ["[0, 0, 1]", "[0, 0, -3]"])
@@ -140,7 +141,7 @@ def test_a_journal_slows_a_wheel(method):
 def test_whichever_way_it_is_drawn(axis, bodies, planar, spin):
     r = run(planar + wheel(axis=axis, bodies=bodies, spin=spin))
     slower = 0.012 * 0.2 * 3 * G / 0.02
-    assert r["wheel.angular_velocity"][-1, 2] == pytest.approx(np.sign(spin) * (20 - slower / 2))
+    assert r["wheel.angular_velocity"][-1, 2] == approx(np.sign(spin) * (20 - slower / 2))
 
 
 def test_ends_of_a_shaft_and_its_collar():
@@ -165,8 +166,8 @@ output: {channels: ["*"]}
         (", thrust_radius: 24 mm", 3 * G + 2 * 9),
     ):
         r = run(text.replace("RUB", rubs("bearing", 0.1, ", radius: 12 mm" + more)))
-        assert r["rub.normal_force"] == pytest.approx(N, rel=1e-9), more
-        assert r["turn.rate"][-1] == pytest.approx(20 - 0.1 * 0.012 * N / 0.02 * 0.01, abs=1e-7)
+        assert r["rub.normal_force"] == approx(N, rel=1e-9), more
+        assert r["turn.rate"][-1] == approx(20 - 0.1 * 0.012 * N / 0.02 * 0.01, abs=1e-7)
 
 
 @pytest.mark.parametrize("method", ["dop853", "radau", "ggl", "generalized_alpha"])
@@ -203,10 +204,10 @@ output: {{channels: ["*"]}}
 
     found = solve_ivp(rate, (0, 0.4), [0, -3], t_eval=r.t, rtol=1e-11, atol=1e-12)
     assert np.all(found.y[1] < -0.1)
-    assert r["phi"] == pytest.approx(found.y[0], abs=10 * error)
+    assert r["phi"] == approx(found.y[0], abs=10 * error)
     loads = np.linalg.norm(r["pin.reaction"][:, :2], axis=1)
-    assert r["rub.normal_force"] == pytest.approx(loads, rel=1e-9)
-    assert r["rub.force"] == pytest.approx(mu * r0 * loads, rel=1e-9)
+    assert r["rub.normal_force"] == approx(loads, rel=1e-9)
+    assert r["rub.force"] == approx(mu * r0 * loads, rel=1e-9)
     assert energy_error(r) < 100 * error
 
 
@@ -257,10 +258,10 @@ def test_a_thread(of, sign, spin):
     h = PITCH / 2 / np.pi
     # alpha up the thread: I alpha = -F r tan, m (h alpha + g) = F
     alpha = -m * G * MEAN * tan / (I + m * h * MEAN * tan)
-    assert r["turn.rate"] == pytest.approx(sign * (spin + alpha * r.t), abs=1e-6)
+    assert r["turn.rate"] == approx(sign * (spin + alpha * r.t), abs=1e-6)
     F = m * (h * alpha + G)
-    assert r["thread.reaction"][:, 2] + friction_along(r, m, F) == pytest.approx(F, rel=1e-8)
-    assert r["rub.normal_force"] == pytest.approx(F / (np.cos(L) - up * mu * np.sin(L)), rel=1e-8)
+    assert r["thread.reaction"][:, 2] + friction_along(r, m, F) == approx(F, rel=1e-8)
+    assert r["rub.normal_force"] == approx(F / (np.cos(L) - up * mu * np.sin(L)), rel=1e-8)
     assert energy_error(r) < 1e-8
 
 
@@ -275,10 +276,10 @@ def test_efficiency_of_a_thread(spin):
     drive = f"drives: {{crank: {{joint: thread.angle, velocity: {spin}}}}}\nsensors"
     r = run(nut(0.1, spin).replace("sensors", drive))
     tan = np.tan(L + np.sign(spin) * np.arctan(0.1))
-    assert r["crank.force"] == pytest.approx(2 * G * MEAN * tan, rel=1e-8)
+    assert r["crank.force"] == approx(2 * G * MEAN * tan, rel=1e-8)
     lifted = 2 * G * spin * PITCH / 2 / np.pi
     if spin > 0:
-        assert lifted / r["crank.power"] == pytest.approx(np.tan(L) / tan, rel=1e-8)
+        assert lifted / r["crank.power"] == approx(np.tan(L) / tan, rel=1e-8)
 
 
 @pytest.mark.parametrize("mu, locks", [(0.12, False), (0.15, True)])
@@ -290,7 +291,7 @@ def test_backdriving(mu, locks):
     else:
         tan, h = np.tan(L - np.arctan(mu)), PITCH / 2 / np.pi
         alpha = -2 * G * MEAN * tan / (0.002 + 2 * h * MEAN * tan)
-        assert np.polyfit(r.t[500:], r["turn.rate"][500:], 1)[0] == pytest.approx(alpha, rel=1e-5)
+        assert np.polyfit(r.t[500:], r["turn.rate"][500:], 1)[0] == approx(alpha, rel=1e-5)
 
 
 # --- several ways to slide ------------------------------------------------------------------------
@@ -326,11 +327,11 @@ def test_a_puck_slides_straight(method, kind):
     gone = 5 * t - 0.2 * G * t**2 / 2
     way = r["puck.position"] - [1, 2, 3]
     # below v1 it creeps by v1^2/(2 mu g) more
-    assert way == pytest.approx(np.outer(gone, [0.6, 0.8, 0]), abs=10 * error + 1e-6)
+    assert way == approx(np.outer(gone, [0.6, 0.8, 0]), abs=10 * error + 1e-6)
     moving = r.t < stops - 0.01
-    assert r["rub.force"][moving] == pytest.approx(-0.2 * 2 * G, rel=1e-8)
+    assert r["rub.force"][moving] == approx(-0.2 * 2 * G, rel=1e-8)
     speed = np.linalg.norm(r["puck.velocity"], axis=1)
-    assert r["rub.sliding_speed"] == pytest.approx(speed, abs=1e-6)
+    assert r["rub.sliding_speed"] == approx(speed, abs=1e-6)
 
 
 def test_a_puck_sticks_in_every_direction():
@@ -342,12 +343,12 @@ def test_a_puck_sticks_in_every_direction():
                     solver="tolerance: 1e-8")  # fmt: skip
         r = run(text)
         assert np.abs(r["puck.position"] - [1, 2, 3]).max() < 3e-5
-        assert r["rub.force"][-1] == pytest.approx(-2 * G * np.sin(0.3), rel=1e-6)
+        assert r["rub.force"][-1] == approx(-2 * G * np.sin(0.3), rel=1e-6)
         r = run(text.replace("0.35", "0.25"))
         a = G * (np.sin(0.3) - 0.25 * np.cos(0.3))
         late = r.t > 1
         slope = np.polyfit(r.t[late], r["puck.velocity"][late], 1)[0]
-        assert slope == pytest.approx(a * np.array([np.cos(direction), np.sin(direction), 0]),
+        assert slope == approx(a * np.array([np.cos(direction), np.sin(direction), 0]),
                                       abs=1e-5)  # fmt: skip
 
 
@@ -383,9 +384,9 @@ output: {{channels: ["*"]}}
     found = solve_ivp(rates, (0, 0.3), [1, 30], t_eval=r.t, rtol=1e-10, atol=1e-12).y
     name, spin = ("puck", 2) if kind == "planar" else ("shaft", 0)
     near = 1e-6 if text is SLIDING else 2e-3  # bristles bend first
-    assert r[f"{name}.velocity"][:, way] == pytest.approx(found[0], abs=near)
-    assert r[f"{name}.angular_velocity"][:, spin] == pytest.approx(found[1], abs=30 * near)
-    assert r["rub.sliding_speed"][10:] == pytest.approx(
+    assert r[f"{name}.velocity"][:, way] == approx(found[0], abs=near)
+    assert r[f"{name}.angular_velocity"][:, spin] == approx(found[1], abs=30 * near)
+    assert r["rub.sliding_speed"][10:] == approx(
         np.hypot(found[0], r0 * found[1])[10:], abs=3 * near
     )
     assert found[0][-1] > 0.6  # alone it would be 0.41
@@ -413,8 +414,8 @@ output: {{channels: ["*"]}}
 """)
     away = r["bead.position"] - [3, 1, 0]
     gone = 2 * r.t + G * (0.6 - 0.3 * 0.8) * r.t**2 / 2
-    assert away == pytest.approx(np.outer(gone, [0.8, -0.6, 0]), abs=1e-7)
-    assert r["rub.normal_force"] == pytest.approx(2 * G * 0.8)
+    assert away == approx(np.outer(gone, [0.8, -0.6, 0]), abs=1e-7)
+    assert r["rub.normal_force"] == approx(2 * G * 0.8)
 
 
 def test_in_a_template():
@@ -429,7 +430,7 @@ instances: {{a: {{template: part}}, b: {{template: part, forces: {{rub: {{radius
     r = run(text)
     for name, radius in (("a", 0.012), ("b", 0.024)):
         slower = radius * 0.2 * 3 * G / 0.02
-        assert r[f"{name}_turn.rate"] == pytest.approx(20 - slower * r.t, abs=1e-7)
+        assert r[f"{name}_turn.rate"] == approx(20 - slower * r.t, abs=1e-7)
 
 
 # --- guides that jam ------------------------------------------------------------------------------
@@ -453,12 +454,12 @@ def test_an_eccentric_push_jams_a_guide(mu, jams):
     """Pushed at a distance a from a guide of length l: N = 2 F a/l, so mu > l/(2a) holds any F."""
     told = GUIDE.replace("ARM", "0.4").replace("RUB", rubs("rail", mu, ", length: 0.2", STICKS))
     r = run(told)
-    assert r["rub.normal_force"] == pytest.approx(2 * 40 * 0.4 / 0.2, rel=1e-6)
+    assert r["rub.normal_force"] == approx(2 * 40 * 0.4 / 0.2, rel=1e-6)
     if jams:
         assert np.abs(r["s"]).max() < 1e-4
     else:
         gained = np.polyfit(r.t[500:], r["s.rate"][500:], 1)[0]
-        assert gained == pytest.approx((40 - mu * 160) / 4, rel=1e-6)
+        assert gained == approx((40 - mu * 160) / 4, rel=1e-6)
 
 
 @pytest.mark.parametrize("mu, locks", [(0.0, False), (0.2, False), (0.35, True)])
@@ -485,12 +486,12 @@ output: {{channels: ["*"]}}
 """)
     if locks:
         assert abs(r["out"][-1]) < 1e-4
-        assert r["rub.normal_force"][-1] == pytest.approx(m * G * c, rel=1e-6)
+        assert r["rub.normal_force"][-1] == approx(m * G * c, rel=1e-6)
         return
     N = m * G / (c + mu * s + m / M * np.tan(b) * (s - mu * c))
     late = r.t > 0.5
-    assert r["rub.normal_force"][late] == pytest.approx(N, rel=1e-6)
-    assert r["wedge.acceleration"][late, 0] == pytest.approx(N * (s - mu * c) / M, rel=1e-5)
+    assert r["rub.normal_force"][late] == approx(N, rel=1e-6)
+    assert r["wedge.acceleration"][late, 0] == approx(N * (s - mu * c) / M, rel=1e-5)
 
 
 # --- Painleve -------------------------------------------------------------------------------------
@@ -538,8 +539,8 @@ def test_a_rod_on_a_rough_line(mu, angle, speed):
         N for side in (1, -1)
         if np.sign(N := G / (1 + 3 * c * c + sign * side * mu * 3 * c * s)) == side
     )  # fmt: skip
-    assert r["rub.normal_force"][0] == pytest.approx(abs(N), rel=1e-9)
-    assert r["line.reaction"][0, 1] == pytest.approx(N, rel=1e-9)
+    assert r["rub.normal_force"][0] == approx(abs(N), rel=1e-9)
+    assert r["line.reaction"][0, 1] == approx(N, rel=1e-9)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -557,7 +558,7 @@ def test_a_rod_that_comes_to_where_there_is_no_answer(method):
     turned = np.deg2rad(85) + np.arcsin(r["rod.rotation"][:, 3])
     late = r.outcome.time - r.t[-1]
     at = turned[-1] + late * r["rod.angular_velocity"][-1, 2]
-    assert at == pytest.approx(first, abs=1e-3 if "alpha" in method else 1e-4)
+    assert at == approx(first, abs=1e-3 if "alpha" in method else 1e-4)
 
 
 # --- explicit steps -------------------------------------------------------------------------------
@@ -628,9 +629,9 @@ def test_a_slider_crank_that_rubs_everywhere(method, exact_crank):
         load = np.linalg.norm(F, axis=1)
         if name == "d":
             load = load_of_slide(r)
-        assert r[f"{name}.normal_force"] == pytest.approx(load, rel=1e-9, abs=1e-9)
+        assert r[f"{name}.normal_force"] == approx(load, rel=1e-9, abs=1e-9)
         check_law(r, name, 0.1 * radius, radius)
-    assert r["turn"] == pytest.approx(exact_crank["turn"], abs=max(30 * error, 1e-6))
+    assert r["turn"] == approx(exact_crank["turn"], abs=max(30 * error, 1e-6))
     assert energy_error(r) < max(100 * error, 1e-7)
 
 
@@ -640,7 +641,7 @@ def check_law(r, name, part, radius):
     full = np.abs(speed) > 1.1e-3
     assert full.sum() > 0.5 * len(full)
     wanted = -part * np.sign(speed) * r[f"{name}.normal_force"]
-    assert force[full] == pytest.approx(wanted[full], rel=1e-9, abs=1e-12)
+    assert force[full] == approx(wanted[full], rel=1e-9, abs=1e-12)
     assert (force * speed / radius).max() <= 1e-12
 
 
@@ -679,7 +680,7 @@ output: {channels: ["*"]}
         tilt = np.cross(M, a) / span
         load = np.linalg.norm(half + tilt, axis=1) + np.linalg.norm(half - tilt, axis=1)
         load += np.abs(R[:, 2]) * 1.5 if name == "a" else np.abs(M[:, 0]) * 2 / 0.08
-        assert r[f"{name}.normal_force"] == pytest.approx(load, rel=1e-9, abs=1e-9)
+        assert r[f"{name}.normal_force"] == approx(load, rel=1e-9, abs=1e-9)
         assert np.abs(M[:, 0 if name == "d" else 1]).max() > 0.1
         check_law(r, name, 0.1 * radius, radius)
     assert energy_error(r) < max(100 * error, 1e-7)
@@ -690,9 +691,9 @@ def test_with_other_stabilisations(how):
     """What feedback brings back to the constraints presses nothing."""
     exact = run(crank(mu=0.3))
     r = run(crank(f"tolerance: 1e-9, stabilisation: {how}", 0.3))
-    assert r["turn"] == pytest.approx(exact["turn"], abs=1e-8)
+    assert r["turn"] == approx(exact["turn"], abs=1e-8)
     load = np.linalg.norm(r["A.reaction"], axis=1)
-    assert r["a.normal_force"] == pytest.approx(load, rel=1e-12)
+    assert r["a.normal_force"] == approx(load, rel=1e-12)
 
 
 def test_with_masses_far_apart():
@@ -702,8 +703,8 @@ def test_with_masses_far_apart():
     )
     r = run(text.replace("end: 0.5", "end: 0.2"))
     load = np.linalg.norm(r["C.reaction"], axis=1)
-    assert r["c.normal_force"] == pytest.approx(load, rel=1e-7, abs=1e-9)
-    assert r["d.normal_force"] == pytest.approx(load_of_slide(r), rel=1e-7, abs=1e-9)
+    assert r["c.normal_force"] == approx(load, rel=1e-7, abs=1e-9)
+    assert r["d.normal_force"] == approx(load_of_slide(r), rel=1e-7, abs=1e-9)
     assert energy_error(r) < 1e-6
 
 
@@ -744,8 +745,8 @@ output: {{channels: ["*"]}}
     assert np.sum(r.mechanism.model.hub >= 0) == 1
     for name in ("c", "j3"):
         load = np.linalg.norm(r[f"{name}.reaction"], axis=1)
-        assert r[f"f{name}.normal_force"] == pytest.approx(load, rel=1e-12)
-    assert r["hub.angular_velocity"][-1, 2] == pytest.approx(0.434650767, abs=1e-7)
+        assert r[f"f{name}.normal_force"] == approx(load, rel=1e-12)
+    assert r["hub.angular_velocity"][-1, 2] == approx(0.434650767, abs=1e-7)
     assert energy_error(r) < 1e-8
 
 
@@ -767,10 +768,10 @@ events:
 """.replace("UNLOCKED ", unlocked)
     r = run(block(3.0, 0.2, ", constant: 3 N", end=0.4) + hold)
     held, free = (r.t > 0.1) & (r.t < 0.2), r.t > 0.2
-    assert r["rub.force"][held] == pytest.approx(0, abs=1e-9)
-    assert r["rub.normal_force"][held] == pytest.approx(2 * G * np.cos(SLOPE))
-    assert r["rub.force"][free] == pytest.approx(0, abs=0)
-    assert r["block.acceleration"][free] == pytest.approx(
+    assert r["rub.force"][held] == approx(0, abs=1e-9)
+    assert r["rub.normal_force"][held] == approx(2 * G * np.cos(SLOPE))
+    assert r["rub.force"][free] == approx(0, abs=0)
+    assert r["block.acceleration"][free] == approx(
         np.array([0.0, -G, 0.0]) + 0 * r["block.velocity"][free]
     )
     assert energy_error(r) < 1e-9
@@ -781,7 +782,7 @@ def test_a_lock_that_makes_a_reaction_ambiguous_ends_the_run():
     more = "events: {hold: {when: t, value: 0.05, do: {lock: [A, D]}}}\n"
     r = run(crank(more=more), fails=True)
     assert "not unique" in r.outcome.reason and "event 'hold'" in r.outcome.reason
-    assert r.outcome.time == pytest.approx(0.05)
+    assert r.outcome.time == approx(0.05)
 
 
 def test_on_a_flexible_bar():
@@ -809,11 +810,11 @@ bodies:
     for solver in ("method: radau, formulation: index1, tolerance: 1e-6",
                    "method: radau, formulation: ggl, tolerance: 1e-6"):  # fmt: skip
         r = run(bar.replace("SOLVER", solver))
-        assert r["phi"] == pytest.approx(exact["phi"], abs=2e-4)
+        assert r["phi"] == approx(exact["phi"], abs=2e-4)
         late = r.t > 0.05
         load = np.linalg.norm(r["pin.reaction"], axis=1)
-        assert r["rub.normal_force"] == pytest.approx(load, rel=1e-7)
-        assert r["rub.force"][late] == pytest.approx(exact["rub.force"][late], rel=0.02)
+        assert r["rub.normal_force"] == approx(load, rel=1e-7)
+        assert r["rub.force"][late] == approx(exact["rub.force"][late], rel=0.02)
 
 
 def test_more_friction_than_can_be_proved():
@@ -825,7 +826,7 @@ def test_more_friction_than_can_be_proved():
         told = [one for one in doubts(r.scenario, r.mechanism, r.outcome) if "not proved" in one]
         many = r.outcome.statistics.get("unproved_frictions", 0)
         assert (len(told), many > 0) == ((1, True) if mu == 1.5 else (0, False))
-        assert r["d.normal_force"] == pytest.approx(load_of_slide(r), rel=1e-9, abs=1e-9)
+        assert r["d.normal_force"] == approx(load_of_slide(r), rel=1e-9, abs=1e-9)
 
 
 def load_of_slide(r):

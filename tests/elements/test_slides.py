@@ -44,8 +44,8 @@ forces:
 contact_laws:
   rough: {{normal: impact, stiffness: 1e8, damping: 0, ramp: 1e-6,
           friction: {{law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1e-3}}}}
-solver: {{end: 0.6, method: static_path}}
-output: {{every: 0.02}}
+solver: {{end: 0.4, method: static_path}}
+output: {{every: 0.04}}
 """)
     away = abs(np.cos(2 * np.pi * got.t)) > 0.05  # from where it turns back
     want = 0.3 * 50 * np.sign(np.cos(2 * np.pi * got.t))

@@ -121,7 +121,7 @@ def test_a_table_against_its_integral(method):
 
     x, y = [-0.5, -0.1, 0.0, 0.02, 0.2, 0.6], [-300, -20, 0, 30, 45, 200]
     rows = [list(p) for p in zip(x, y, strict=True)]
-    r = lined(f"elastic: {{table: {rows}}}", 3.0, 2, method)
+    r = lined(f"elastic: {{table: {rows}}}", 3.0, 1, method)
     f = Akima1DInterpolator(x, y).antiderivative()
     at = r["block.position"][:, 0]
     assert at.max() < 0.6 and at.min() > -0.5
@@ -188,7 +188,7 @@ def test_a_rope_with_a_damper_never_pushes_and_takes_what_it_lets_go():
         T = max(0.0, 500 * s + 40 * -y[1]) if s > 0 else 0.0
         return [y[1], -9.81 + T / 80]
 
-    exact = solve_ivp(rate, (0, 12), [-1, 0], rtol=1e-11, atol=1e-12, t_eval=r.t, max_step=1e-3)
+    exact = solve_ivp(rate, (0, 12), [-1, 0], "DOP853", r.t, rtol=1e-11, atol=1e-12, max_step=0.02)
     np.testing.assert_allclose(r["height"], exact.y[0], atol=1e-6)
     assert r["rope.force"].min() == 0.0
     assert (np.diff(r["energy.work.dampers"]) <= 1e-9).all()

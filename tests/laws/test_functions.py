@@ -17,6 +17,8 @@ from trsim.laws.functions import (
     value_and_rate,
 )
 
+from ..sizes import size
+
 SENSORS = {"stroke": 2, "door_angle": 0}
 NO_SENSORS = np.zeros((0, 2))
 
@@ -125,7 +127,7 @@ def next_to(node, names):
                 continue
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=size(150, 400), deadline=None)
 @given(trees(["t", "pi", "stroke", "door_angle"]), *[st.floats(-3, 3)] * 3)
 @example(STEP_OF_ROUNDING, 0.0, 4.248555625442094e-16, 0.0)
 def test_random_trees_against_python(node, t, stroke, angle):
@@ -191,7 +193,7 @@ def test_motion_derivatives_against_differences(text, t):
     assert f2 == pytest.approx((high[1] - low[1]) / (2 * h), rel=1e-8, abs=1e-8)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=size(60, 150), deadline=None)
 @given(trees(["t"]), st.floats(-2, 2))
 def test_random_trees_have_consistent_derivatives(node, t):
     try:

@@ -9,6 +9,8 @@ from scipy.integrate import solve_ivp
 from trsim.laws.contact import RULES
 from trsim.laws.impact import NoImpact, impact
 
+from ..sizes import size
+
 SLANTED = 0.5, 1.2  # kg, m: mass and length of a slender rod
 
 
@@ -119,7 +121,7 @@ def test_newton_alone_would_give_the_normal_force_more_than_it_took():
 @pytest.mark.parametrize("rule", RULES)
 def test_no_impact_in_space_gives_energy(rule):
     rng = np.random.default_rng(7)
-    for _ in range(100):
+    for _ in range(size(30, 100)):
         A = rng.normal(size=(3, 3))
         G, u = A @ A.T + 0.1 * np.eye(3), rng.normal(size=3)
         u[0] = -abs(u[0]) - 0.01

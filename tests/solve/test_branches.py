@@ -114,7 +114,7 @@ def test_rows_next_to_where_branches_meet(number, method, R):
         for angle, turn, rows in ways if RELEASE else ways[: 1 + (k == 0)]:
             every = turn / rate
             scene = flat(number, f"{drive}{every!r}}}", R, angle=angle, end=rows * every)
-            for tolerance in TOLERANCES if RELEASE else TOLERANCES[k % 2 :: 2]:
+            for tolerance in TOLERANCES if RELEASE else TOLERANCES[k % 3 :: 3]:
                 r = run(scene, *METHODS[method], f"solver.tolerance={tolerance}", ACCELERATIONS)
                 off = np.abs(spins(r, number, R)).max(axis=1) / rate**2
                 assert len(off) == 1 + rows

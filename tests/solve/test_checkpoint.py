@@ -10,6 +10,8 @@ from trsim.scenario.load import loads
 from trsim.solve import simulate as module
 from trsim.solve.simulate import simulate
 
+from ..sizes import size
+
 SPATIAL = (
     "planar=false",
     *(f"bodies.{b}.inertia=[1e-4, 2e-4, 2e-4]" for b in ("crank", "rod", "slider")),
@@ -77,6 +79,7 @@ KINDS = [
 IMPLICIT = (*EVENTS, "solver.method=radau")
 GGL = (*RUBS, "solver.method=radau", "solver.formulation=ggl")
 TABLES = ("rows", "steps", "events", "recorded", "points")
+PARTS = size(3, 5)  # of a run, at whose beginnings it is put back
 KEPT = {"mem", "branch", "status"}  # of a scene: the record's, and counters
 
 
@@ -117,7 +120,7 @@ def test_every_state_leads_to_the_same_end(sets, monkeypatch):
     cut, again = blocks(sets)
     assert_same(cut, again, unbroken, outcome)  # where a run pauses does not matter
     assert len(cut) > 5
-    for k in range(0, len(cut) - 1, max(1, len(cut) // 5)):
+    for k in range(0, len(cut) - 1, max(1, len(cut) // PARTS)):
         rest, end = blocks(sets, cut[k].state)
         assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
 
@@ -170,7 +173,7 @@ def test_places_on_curves_turns_of_drums_and_impacts(text, sets, monkeypatch):
     cut, again = blocks(sets, text=text)
     assert len(cut) > 5
     assert_same(cut, again, unbroken, outcome)
-    for k in range(0, len(cut) - 1, max(1, len(cut) // 5)):
+    for k in range(0, len(cut) - 1, max(1, len(cut) // PARTS)):
         rest, end = blocks(sets, cut[k].state, text=text)
         assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
 

@@ -122,7 +122,7 @@ def test_a_run_says_when_it_changed_its_branch_and_only_then(scene, method, R):
     drawn, branches = scene
     wrong = 0
     for k, longer in enumerate((1e-9, 1e-8, 1e-7, 1e-6, 1e-5, -1e-8, -1e-6, -1e-9)):
-        for tolerance in TOLERANCES if RELEASE else TOLERANCES[k % 3 :: 3]:
+        for tolerance in TOLERANCES if RELEASE else TOLERANCES[k % 3 :: 3][: 1 + (k == 0)]:
             made, sets = drawn(longer, R)
             ways = (f"solver.method={method}", f"solver.tolerance={tolerance}")
             r = run(made, *sets, *ways, MOTION, SHORTER[drawn], fails=None)
@@ -148,7 +148,8 @@ def test_a_part_that_ends_between_the_branches_hides_no_change():
 @pytest.mark.parametrize("method", ["auto", "dop853", "radau", "ggl"])
 @pytest.mark.parametrize("number", [2, 3])
 def test_nothing_is_said_where_branches_meet(number, method, R):
-    for tolerance in ("1e-2", "1e-4", "1e-6"):
+    tolerances = ("1e-2", "1e-4", "1e-6") if RELEASE else ("1e-2", f"1e-{2 * number}")
+    for tolerance in tolerances:
         sets = (*METHODS[method], f"solver.tolerance={tolerance}")
         r = run(flat(number, "", R, end=size(1, 5)), *turning(number, 6.0, R), *sets, MOTION)
         assert not told(r), tolerance
@@ -177,6 +178,8 @@ def test_no_first_step_hides_a_change(method):
         longer = 10.0 ** -float(rng.integers(5, 10))
         made, sets = drawn(-longer if drawn is upright and rng.random() < 0.3 else longer, R)
         tolerance, first = 10 ** rng.uniform(-6, -2), rng.choice(np.geomspace(1e-3, 1.0, 60))
+        if method == "generalized_alpha":  # of second order: ten thousand steps, none of them long
+            tolerance = max(tolerance, size(1, 0) * 1e-5)
         ways = (f"method={method}", f"tolerance={tolerance}", f"first_step={first}")
         given = [f"solver.{way}" for way in ways]
         r = run(made, *sets, *given, "output.every=0.01", MOTION, SHORTER[drawn], fails=None)
@@ -270,7 +273,7 @@ def test_no_velocity_there_is_said_to_lock(stopped, R):
     free[:, there] = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True))[2][-2:]
     free = np.einsum("fij,kfj->kfi", C, free.reshape(2, *C.shape[:2])).reshape(2, -1)
     work = workspace(model)
-    for angle in np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False):
+    for angle in np.linspace(0.0, 2.0 * np.pi, size(8, 16), endpoint=False):
         rates = 3.0 * (np.cos(angle) * free[0] + np.sin(angle) * free[1])
         poses(work, y)
         y[model.n_q : model.n_q + model.n_v] = in_solve_axes(work, rates)

@@ -16,8 +16,9 @@ from ..sizes import size
 
 SEEDS = size(40, 1500)
 TOGETHER = 20  # in one test
-# one in ten makes ten thousand steps around its flat places: it is judged as far as it came
-STEPS = size(2_000, 1_000_000)
+# one in ten makes ten thousand steps around its flat places: it is judged as far as it came; the
+# others make a hundred or two
+STEPS = size(500, 1_000_000)
 PLAINLY = 0.02  # sine or cosine: what lies closer to a flat place is on no side of it
 
 SCENE = """

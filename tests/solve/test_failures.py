@@ -129,7 +129,7 @@ solver: {{end: 10 s, {}}}
 
 @pytest.mark.parametrize(
     "method",  # of second order: at the usual tolerance it takes half a million steps
-    ["auto", "radau", "rk4, step: 1e-3", "generalized_alpha, tolerance: 1e-6"],
+    ["auto", "radau", "rk4, step: 1e-3", "generalized_alpha, tolerance: 1e-4"],
 )
 def test_a_crank_that_cannot_turn_through(method):
     """It locks where coupler (0.2828 m) and rocker (0.2 m) lie stretched between crank and D."""
@@ -190,8 +190,8 @@ def test_one_that_locks_where_all_its_joints_lie_in_line(method):
     event = f"events: {{a: {{when: q, value: -2e-8, crosses: both, times: 1, {lock}}}}}"
     made = flat(3, f"sensors: {{q: {{joint: F0}}}}\n{event}", TILTED, end=0.9)
     # extremes of forces, which are without bound here, are sought for long
-    ways = (f"solver.method={method}", "solver.tolerance=1e-5", "output.channels=[]")
+    ways = (f"solver.method={method}", "solver.tolerance=3e-6", "output.channels=[]")
     r = run(made, *turning(3, -4.0, np.asarray(TILTED)), *ways, fails=True)
     assert "the mechanism locks here: " in r.outcome.reason
     # at 4 rad/s, until joints would be open by the tolerance: theta^2 / 2
-    assert r.outcome.time < np.sqrt(2.0 * 1e-5) / 4.0
+    assert r.outcome.time < np.sqrt(2.0 * 3e-6) / 4.0

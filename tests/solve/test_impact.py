@@ -11,6 +11,7 @@ from trsim.solve.march.record import EVENT_KIND, EVENT_SPEED, EVENT_TIME, ONSET,
 from ..linkages import slider_crank
 from ..mechanisms import DATA, SPEED, bouncing_ball, central_impact, p1_slider_crank, table
 from ..runs import energy_error, run
+from ..sizes import size
 
 
 def first_impact(r):
@@ -159,7 +160,9 @@ def test_slider_crank_with_clearance_against_the_reference(friction):
     errors = []
     for tolerance in (1e-5, 1e-6, 1e-8):
         some = []
-        for part in np.geomspace(0.4, 1.0, 16).tolist():  # one error is anything from 0.1 to 20
+        for part in np.geomspace(
+            0.4, 1.0, size(8, 16)
+        ).tolist():  # one error is anything from 0.1 to 20
             r = run(p1_slider_crank(friction, part * tolerance))
             assert r.t == pytest.approx(reference[:, 0], abs=1e-12)
             some.append(np.abs(r["slider.velocity"][:, 0] - reference[:, 1]).max() / 30)

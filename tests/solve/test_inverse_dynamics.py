@@ -178,10 +178,10 @@ def by_virtual_work(t):
 
 def test_excavator_arm():
     r = run(load(VALIDATION / "excavator_arm.yaml"))
-    known = np.array([by_virtual_work(t) for t in r.t])
+    known = np.array([by_virtual_work(t) for t in r.t[::3]])
     found = np.column_stack([r[f"{name}_ram.force"] for name in ("boom", "stick", "bucket")])
-    print(found[100], np.abs(found - known).max(), np.abs(known).max())
-    assert found == pytest.approx(known, abs=1e-5 * np.abs(known).max())
+    print(found[100], np.abs(found[::3] - known).max(), np.abs(known).max())
+    assert found[::3] == pytest.approx(known, abs=1e-5 * np.abs(known).max())
     assert found[100] == pytest.approx([43171.7, -28412.2, -11558.5], abs=0.1)
     assert r["bucket_ram.position"] == pytest.approx(0.08 * np.sin(1.5 * r.t), abs=1e-12)
     assert r.outcome.statistics["evaluations"] <= 4 * len(r.t)

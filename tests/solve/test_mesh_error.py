@@ -14,8 +14,9 @@ from trsim.solve.start.consistent import start
 
 from ..bars import Bar
 from ..runs import assemble, loads, run
+from ..sizes import size
 
-FINE = 32
+FINE = size(16, 32)
 BAR = """
 planar: true
 parameters: {load: 1, EA: 1.2e5}
@@ -174,7 +175,8 @@ output: {every: 10 ms}
 @pytest.mark.parametrize("method", ["auto", "scipy:RK45"])
 def test_a_run_tells_the_error_of_a_mesh_that_is_bent_far(method):
     """A bar that lags behind its hub, against 8 elements at the same time."""
-    sets = "parameters.EA=1e3", f"solver.method={method}"
+    sets = ("parameters.EA=1e3", f"solver.method={method}")
+    sets += ("solver.tolerance=1e-4",) if "scipy" in method else ()
     told, tips = {}, {}
     for n in (2, 8):
         r = run(BAR + TURNED, f"bodies.beam.elements={n}", *sets)

@@ -1,5 +1,7 @@
 """The error norm: what a run is off by stays in proportion to its tolerance, in any units."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -86,6 +88,7 @@ def test_stops_on_angles_are_the_same_in_any_unit_of_length():
         assert np.abs(other["a"] - one["a"]).max() < 1e-4  # ten tolerances
 
 
+@cache
 def struck(speed, method, tolerance):
     """A rod against a stop with damping, whose force has a kink where the stop would pull."""
     return run(f"""
@@ -106,7 +109,7 @@ output: {{every: 0.01}}
 def test_a_kink_between_two_stages_stays_in_proportion_to_the_tolerance(method, tolerance):
     """An error of a step is estimated from its stages, and a kink lies anywhere between them."""
     for speed in np.linspace(2.0, 9.0, 15):
-        rough, tight = struck(speed, method, tolerance), struck(speed, "radau", 1e-3 * tolerance)
+        rough, tight = struck(speed, method, tolerance), struck(speed, "radau", 1e-9)
         assert np.abs(rough["a"] - tight["a"]).max() < 10.0 * tolerance, speed
 
 
@@ -124,6 +127,7 @@ output: {every: 2e-3, channels: ['b0.*']}
 """
 
 
+@cache
 def rested(method, tolerance):
     """Angular accelerations of the journal's rod, behind its last touch."""
     r = run(RESTING.replace("METHOD", method).replace("TOLERANCE", f"{tolerance}"))

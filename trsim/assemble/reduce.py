@@ -208,11 +208,12 @@ def closest(model: Model, t: float, y: Array) -> tuple[Array, float]:
 
     Returns y and the largest residual left.
     """
+    work = workspace(model)  # one for all evaluations
 
     def step(y: Array, J: Array, phi: Array) -> Array:
-        return shortest(J, roots(model, y, model.d == 3), phi)
+        return shortest(J, roots(work, y, work.d == 3), phi)
 
-    return _newton(model, t, y, None, step)
+    return _newton(work, t, y, None, step)
 
 
 def closed(
@@ -227,11 +228,11 @@ def closed(
         dx[free] = scale * least_squares(J[:, free] * scale, phi, INDEPENDENT)
         return dx
 
-    return _newton(model, 0.0, y, rows, step)
+    return _newton(workspace(model), 0.0, y, rows, step)
 
 
 def _newton(
-    model: Model, t: float, y: Array, rows: NDArray[np.int64] | None,
+    model: Scene, t: float, y: Array, rows: NDArray[np.int64] | None,
     step: Callable[[Array, Array, Array], Array],
 ) -> tuple[Array, float]:  # fmt: skip
     """y with Phi = 0, or nearly, of some rows or of all; and the largest residual left."""

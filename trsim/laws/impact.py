@@ -69,6 +69,11 @@ class _Impact:
         self.e, self.rule, self.u_0 = e, rule, float(u[0])
         self.slow = AT_REST * sqrt(float(u @ u))
         self.p_c, self.left = 0.0, MOST
+        # a way that turns is hundreds of steps long: what they share is found once
+        self.straight = STRAIGHT * float(np.max(np.abs(self.G)))
+        pulls, holds = (float(np.linalg.norm(part)) for part in (self.G[1:, 0], self.G[1:, 1:]))
+        dies_out = pulls + self.kinetic * holds
+        self.step = STEP / dies_out if dies_out > 0.0 else inf
 
     def blow(self) -> Blow:
         """Compression, then restitution."""
@@ -184,7 +189,7 @@ class _Impact:
             return False
         across = abs(float(d[0] * along[1] - d[1] * along[0]))
         moved = self.y[1:3] @ self.y[1:3] > self.slow**2
-        return bool(moved and across > STRAIGHT * float(np.max(np.abs(self.G))))
+        return bool(moved and across > self.straight)
 
     def line(self, f: Array, p: float) -> None:
         """Go on by the impulse p of the normal force, with the friction f of it."""
@@ -195,13 +200,11 @@ class _Impact:
 
     def curve(self, beyond: Callable[[Array], float]) -> bool:
         """A step along a way that turns; whether the part of the impact ends in it."""
-        G, mu = self.G, self.kinetic
-        step = STEP / (float(np.linalg.norm(G[1:, 0])) + mu * float(np.linalg.norm(G[1:, 1:])))
-        after = self.stepped(step)
+        after = self.stepped(self.step)
         if beyond(after) < 0.0:
             self.y = after
             return False
-        low, high = 0.0, step
+        low, high = 0.0, self.step
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if beyond(self.stepped(middle)) < 0.0 else (low, middle)
@@ -216,7 +219,12 @@ class _Impact:
         return np.asarray(self.y + h / 6.0 * (a + 2.0 * b + 2.0 * c + self.rate(self.y + h * c)))
 
     def rate(self, y: Array) -> Array:
-        """Of y over s."""
-        speed = sqrt(float(y[1:3] @ y[1:3]))
-        p = np.array((speed, *(-self.kinetic * y[1:3])))
-        return np.array((*(self.G @ p), *p, y[0] * speed))
+        """Of y over s.  Thousands are asked for in one impact: nothing is made twice."""
+        slid = y[1:3]
+        found = np.empty(7)
+        p = found[3:6]
+        p[0] = speed = sqrt(slid @ slid)
+        np.multiply(slid, -self.kinetic, out=p[1:])
+        np.matmul(self.G, p, out=found[:3])
+        found[6] = y[0] * speed
+        return found

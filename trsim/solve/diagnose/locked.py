@@ -61,15 +61,15 @@ def goes_on(model: Model, t: float, y: Array) -> bool:
     w, yd = workspace(model), np.zeros_like(y)
     derivative(w, t, y, yd)
     unit = np.tile([model.size] * 3 + [1.0] * 3, model.n - 1)
-    speeds = world_rates(model, y) / unit
+    speeds = world_rates(w, y) / unit
     speed = float(np.linalg.norm(speeds))
     if speed == 0.0:
         return False
     d, velocity, before = AHEAD / speed, speeds / speed, places(w)
-    for way in ways_on(model, t, y, velocity, unit):
-        start = displaced(model, y, AHEAD * way * unit)
+    for way in ways_on(w, t, y, velocity, unit):
+        start = displaced(w, y, AHEAD * way * unit)
         start[model.n_q + model.n_v :] += d * yd[model.n_q + model.n_v :]  # where drives are
-        near, left = closest(model, t + d, start)
+        near, left = closest(w, t + d, start)
         poses(w, near)
         moved = displacement(before, places(w)) / unit
         far = float(np.linalg.norm(moved))
