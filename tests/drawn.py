@@ -22,5 +22,10 @@ def few(monkeypatch, of_each=False):
             seen.add(kind)
 
     monkeypatch.setattr(figures, "planned", chosen)
+    coarse(monkeypatch)
+
+
+def coarse(monkeypatch):
+    """From now on figures have few dots."""
     monkeypatch.setattr(style, "DPI", DOTS)
     monkeypatch.setattr(style, "SLIDES", style.SLIDES._replace(dpi=DOTS))
