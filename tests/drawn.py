@@ -10,17 +10,22 @@ DOTS = 40  # an inch
 def few(monkeypatch, of_each=False):
     """From now on figures have few dots, and each kind is drawn once: of_each report, or of the
     first, and of the others the first figure."""
-    everything, seen = figures.everything, set()
+    planned, seen = figures.planned, set()
 
     def chosen(runs):
         if of_each:
             seen.clear()
-        for k, (name, figure) in zip(count(), everything(runs), strict=False):
+        for k, (name, make) in zip(count(), planned(runs), strict=False):
             kind = name.partition("_")[0]
             if k == 0 or kind not in seen:
-                yield name, figure
+                yield name, make
             seen.add(kind)
 
-    monkeypatch.setattr(figures, "everything", chosen)
+    monkeypatch.setattr(figures, "planned", chosen)
+    coarse(monkeypatch)
+
+
+def coarse(monkeypatch):
+    """From now on figures have few dots."""
     monkeypatch.setattr(style, "DPI", DOTS)
     monkeypatch.setattr(style, "SLIDES", style.SLIDES._replace(dpi=DOTS))

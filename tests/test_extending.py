@@ -37,9 +37,9 @@ def changed(text, change):
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
-    """A copy of the package, changed as the page says."""
+    """A copy of the package, changed as the page says; what is not changed keeps its bytecode."""
     root = tmp_path_factory.mktemp("copy")
-    shutil.copytree(ROOT / "trsim", root / "trsim", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(ROOT / "trsim", root / "trsim")
     for section in KINDS:
         for kind, path, text in blocks(section):
             file = root / path
@@ -48,22 +48,51 @@ def copy(tmp_path_factory):
     return root
 
 
-def trsim(copy, *arguments):
-    """A command line of the changed package, in its folder."""
+EACH = """
+import json, sys
+from contextlib import redirect_stdout
+from io import StringIO
+from trsim.cli import main
+said = []
+for words in json.load(sys.stdin):
+    out = StringIO()
+    with redirect_stdout(out):
+        try:
+            main(words)
+        except SystemExit as ended:
+            assert not ended.code, (words, ended.code)
+    said.append(out.getvalue())
+print(json.dumps(said))
+"""
+
+
+def trsim(copy, *lines):
+    """What the changed package says to command lines, in its folder and in one process."""
     found = subprocess.run(  # noqa: S603
-        [sys.executable, "-m", "trsim", *arguments], cwd=copy, capture_output=True, text=True,
+        [sys.executable, "-c", EACH], cwd=copy, capture_output=True, text=True,
+        input=json.dumps([line.split() for line in lines]),
         env={**os.environ, "PYTHONPATH": str(copy)},
     )  # fmt: skip
     assert found.returncode == 0, found.stdout + found.stderr
-    return found.stdout
+    return json.loads(found.stdout)
 
 
-def simulated(copy, text):
-    """The channels of a run of the changed package."""
-    (copy / "scene.yaml").write_text(text)
-    trsim(copy, "run", "scene.yaml", "-o", "scene.h5")
-    with h5py.File(copy / "scene.h5") as file:
-        return {name: np.array(data) for name, data in file.items() if hasattr(data, "shape")}
+@pytest.fixture(scope="module")
+def examples(copy):
+    """What `explain` has as the example of each new element."""
+    told = trsim(copy, "explain orientation --json", "explain drag --json")
+    return [json.loads(page)["elements"][0]["example"] for page in told]
+
+
+def simulated(copy, *texts):
+    """The channels of runs of the changed package, all in one process."""
+    names = [f"scene{k}" for k in range(len(texts))]
+    for name, text in zip(names, texts, strict=True):
+        (copy / f"{name}.yaml").write_text(text)
+    trsim(copy, *(f"run {name}.yaml -o {name}.h5" for name in names))
+    for name in names:
+        with h5py.File(copy / f"{name}.h5") as file:
+            yield {name: np.array(data) for name, data in file.items() if hasattr(data, "shape")}
 
 
 @pytest.mark.parametrize("section", KINDS)
@@ -80,10 +109,9 @@ def test_what_had_to_be_touched(section):
     assert (len(new), len(touched), lines) == told
 
 
-def test_the_joint(copy):
+def test_the_joint(copy, examples):
     """It falls as if it were free, and what would turn it is held."""
-    page = json.loads(trsim(copy, "explain", "orientation", "--json"))["elements"][0]
-    found = simulated(copy, page["example"])
+    [found] = simulated(copy, examples[0])
     t = found["time"][:, None]
     place = t * [1.0, 0.0, 0.0] - 9.81 * t**2 / 2 * [0.0, 0.0, 1.0]
     assert found["ball.position"] == pytest.approx(place, abs=1e-6)
@@ -92,10 +120,9 @@ def test_the_joint(copy):
     assert found["steady.reaction_moment"] == pytest.approx(held + 0 * place, abs=1e-6)
 
 
-def test_the_force(copy):
+def test_the_force(copy, examples):
     """v = -v_e tanh(g t / v_e) with m g = c v_e^2."""
-    page = json.loads(trsim(copy, "explain", "drag", "--json"))["elements"][0]
-    found = simulated(copy, page["example"])
+    [found] = simulated(copy, examples[1])
     end = np.sqrt(2 * 9.81 / 0.5)
     fast = end * np.tanh(9.81 * found["time"] / end)
     assert found["drop.velocity"][:, 1] == pytest.approx(-fast, abs=1e-6)
@@ -105,7 +132,7 @@ def test_the_force(copy):
 
 def test_the_law(copy):
     """What a journal slides against loses energy, and friction is smooth."""
-    found = simulated(copy, """
+    [found] = simulated(copy, """
 bodies: {disc: {mass: 2, inertia: 0.01, at: [0, -1e-4], angular_velocity: [0, 0, 50]}}
 joints: {pin: {type: revolute, bodies: [ground, disc], at: [0, 0], clearance: 0.1 mm}}
 contact_laws:
@@ -123,21 +150,21 @@ solver: {end: 0.05}
 
 def test_the_method(copy):
     """Half the step, a quarter of the error."""
-    errors = []
-    for step in (2e-3, 1e-3):
-        found = simulated(copy, f"""
-bodies: {{mass: {{mass: 1, inertia: 1, at: [1, 0]}}}}
-joints: {{slide: {{type: prismatic, bodies: [ground, mass], axis: [1, 0]}}}}
-forces: {{spring: {{type: spring_damper, bodies: [ground, mass], points: [[-9, 0], [1, 0]],
-          stiffness: 100, free_length: 9}}}}
-solver: {{end: 1, method: heun, step: {step}}}
-""")  # fmt: skip
-        errors.append(np.abs(found["mass.position"][:, 0] - np.cos(10 * found["time"])).max())
+    text = """
+bodies: {mass: {mass: 1, inertia: 1, at: [1, 0]}}
+joints: {slide: {type: prismatic, bodies: [ground, mass], axis: [1, 0]}}
+forces: {spring: {type: spring_damper, bodies: [ground, mass], points: [[-9, 0], [1, 0]],
+         stiffness: 100, free_length: 9}}
+solver: {end: 1, method: heun, step: STEP}
+"""
+    runs = simulated(copy, *(text.replace("STEP", step) for step in ("2e-3", "1e-3")))
+    errors = [np.abs(r["mass.position"][:, 0] - np.cos(10 * r["time"])).max() for r in runs]
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
 
 
 def test_the_command(copy):
     (copy / "ball.yaml").write_text(BALL)
-    assert trsim(copy, "weigh", "ball.yaml") == "2\n"
-    assert json.loads(trsim(copy, "weigh", "ball.yaml", "--json"))["mass"] == 2.0
-    assert json.loads(trsim(copy, "schema", "weigh"))["title"] == "trsim weigh --json"
+    plain, told, schema = trsim(copy, "weigh ball.yaml", "weigh ball.yaml --json", "schema weigh")
+    assert plain == "2\n"
+    assert json.loads(told)["mass"] == 2.0
+    assert json.loads(schema)["title"] == "trsim weigh --json"

@@ -7,6 +7,7 @@ import pytest
 
 from benchmarks.gallery import tutorial
 from benchmarks.gallery.tutorial import Ended, follow, pictures, steps
+from tests import drawn, inside
 from trsim.cli import main
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -15,6 +16,8 @@ TEXT = (DOCS / "first_mechanism.md").read_text(encoding="utf-8")
 
 def test_the_page_can_be_followed(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    drawn.coarse(monkeypatch)
+    inside.sweeps(monkeypatch)
 
     def typed(words):
         with pytest.raises(SystemExit) as ended:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from trsim.errors import ScenarioError
@@ -12,6 +12,7 @@ from trsim.expressions import parse, substitute
 from trsim.instants import instants, peaked
 
 from .runs import run
+from .sizes import size
 
 AROUND = (math.pi / 2 - math.acos(0.99), math.pi / 2 + math.acos(0.99))
 
@@ -68,6 +69,7 @@ def test_more_than_can_be_certain_is_refused():
         instants(parsed("sin(1e6*t) > 0.99"), 10.0)
 
 
+@settings(max_examples=min(settings().max_examples, size(30, 100)))
 @given(st.lists(st.floats(0.01, 9.9), min_size=1, max_size=6), st.floats(-3.0, 3.0))
 def test_every_root_of_a_polynomial(places, scale):
     """However near to each other they lie; twofold ones are touched."""

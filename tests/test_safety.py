@@ -11,7 +11,7 @@ import pytest
 
 from trsim.cli import main
 
-from . import small
+from . import drawn, small
 from .store.outside import ROOT, warm
 from .watching import NETWORK, PROCESSES, Watch, apart
 
@@ -69,6 +69,7 @@ def test_ruff_guards_the_rest():
 
 def test_a_run_reaches_nothing(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    drawn.few(monkeypatch)
     (tmp_path / "crank.yaml").write_text(small.SLIDER_CRANK)
     commands = [
         ("check", "crank.yaml"),

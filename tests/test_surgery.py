@@ -31,7 +31,7 @@ from trsim.sweeps.ledger import Entry
 
 ROOT = Path(__file__).parent.parent
 FILES, LEDGERS, CHECKPOINTS = size(36, 2_000), size(200, 2_000), size(60, 2_000)
-PARTS = range(2)
+PARTS = range(size(1, 2))  # each begins a process
 ENDS = {0, 2, 3, 4, 5, 7}
 
 

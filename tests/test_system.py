@@ -49,14 +49,21 @@ def test_each_name_has_something_in_its_place(bare):
     assert done.stdout.splitlines() == ["b'beg' False True", "1005 0 0"]
 
 
+BOTH = """
+import sys
+from trsim.cli import main
+for words in (sys.argv[1:], ["report", "x.h5", "-o", "figures", "--dpi", "40"]):
+    try:
+        main(words)
+    except SystemExit as ended:
+        assert ended.code == 0, (words, ended.code)
+"""
 SHORT = ("--set", "solver.end=0.2 ms", "--set", "output.every=0.1 ms")
 
 
 def test_runs_and_reports(bare, tmp_path):
     few = ("--set", "output.channels=[stroke, B.contact_force]")  # figures take their time
-    done = bare("-m", "trsim", "run", "s.yaml", "-o", "x.h5", *SHORT, *few)
-    assert done.returncode == 0, done.stderr
-    done = bare("-m", "trsim", "report", "x.h5", "-o", "figures")
+    done = bare("-c", BOTH, "run", "s.yaml", "-o", "x.h5", *SHORT, *few)
     assert done.returncode == 0, done.stderr
     assert any((tmp_path / "figures").iterdir())
 

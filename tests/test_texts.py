@@ -28,7 +28,7 @@ def faults(tree: ast.AST) -> Iterator[tuple[int, str]]:
         if not isinstance(node, ast.Call):
             continue
         name = getattr(node.func, "attr", getattr(node.func, "id", ""))
-        of = ast.unparse(node.func).rpartition(".")[0]
+        of = ast.unparse(node.func).rpartition(".")[0] if name in OPENING else ""
         given = {one.arg for one in node.keywords}
         if {"text", "universal_newlines"} & given and "encoding" not in given:
             yield node.lineno, "texts of a process without an encoding"

@@ -441,6 +441,7 @@ forces:
   left: {type: spring_damper, bodies: [ground, top], points: [[-1, 0], [0, 0.3]], stiffness: 1000}
   load: {type: applied_load, body: top, direction: [0, -1], force: "20*t"}
 solver: {method: static_path, end: 1 s}
+output: {every: 20 ms}
 """
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests import drawn
 from trsim.report.animation import turns
 from trsim.report.animation.motion import motion
 from trsim.store.read import read
@@ -42,7 +43,8 @@ def test_a_result_runs_again(result, trsim):
     assert "templates" in a.text("scenario/resolved")
 
 
-def test_commands(result, trsim):
+def test_commands(result, trsim, monkeypatch):
+    drawn.coarse(monkeypatch)
     assert "b_pin (clearance_joint)" in trsim("check", "a.yaml")[1]
     assert "b_rod.position" in trsim("show", "a.h5", "--json")[1]
     for words in ((), ("--animate",)):

@@ -85,7 +85,8 @@ def test_force_along_a_rod(tmp_path):
 def test_several_runs_have_colours_and_components_dashes(paths):
     runs = compared([read(path) for path in paths])
     with look():
-        [(_, made)] = components.body(runs, "rod")
+        [(_, make)] = components.body(runs, "rod")
+        made = make()
     way = [(line.get_color(), line.get_linestyle()) for line in made.axes[0].lines]
     assert len({*way}) == len(way) == 4  # x and y of two runs
     assert len({colour for colour, _ in way}) == 2

@@ -74,6 +74,15 @@ def reflect(B, k, scale, A, first, w):
             A[i, j] -= B[i, k] * w[j]
 
 
+@compiled(void(A2, A1))
+def backwards(U, x):
+    """x, the right side, becomes the solution of U x = b, U upper triangular."""
+    for k in range(len(x) - 1, -1, -1):
+        x[k] /= U[k, k]
+        for i in range(k):
+            x[i] -= U[i, k] * x[k]
+
+
 @compiled(int64(A2, A2))
 def diagonalised(A, V):
     """A, symmetric, becomes diagonal by Jacobi's rotations; V, rows, turns along.  Sweeps taken."""
@@ -142,17 +151,10 @@ def least_squares(A: Array, b: Array, least: float) -> Array:
     L, c = R[:rank].T, b[order]
     U, turned, second = _triangle(L, c[:, None])
     y = np.zeros(rank)
-    y[second] = _back(U[:rank], turned[:rank, 0])
+    x = turned[:rank, 0].copy()
+    backwards(U[:rank], x)
+    y[second] = x
     return np.sum(Q[:rank] * y[:, None], axis=0)
-
-
-def _back(U: Array, b: Array) -> Array:
-    """U x = b, U upper triangular."""
-    x = b.copy()
-    for k in range(len(x) - 1, -1, -1):
-        x[k] /= U[k, k]
-        x[:k] -= U[:k, k] * x[k]
-    return x
 
 
 def _rank(R: Array, least: float) -> int:

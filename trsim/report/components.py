@@ -1,6 +1,7 @@
 """Figures of channels with components: motions of bodies, and forces of springs and the like."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from trsim.report.style import DASHES, colour, panels, thinned, titled
 MOTIONS = ("position", "velocity", "angular_velocity")
 FORCES, STRETCHES = ("N", "N*m"), ("m", "rad")  # units of what acts, and of what is deformed
 AXES = "xyz"
-Figures = Iterator[tuple[str, Any]]
+Figures = Iterator[tuple[str, Callable[[], Any]]]  # names, and what makes them
 
 
 def body(runs: list[Shown], name: str) -> Figures:
@@ -23,7 +24,7 @@ def body(runs: list[Shown], name: str) -> Figures:
     there = [channel for channel in channels if any(s.has(channel) for s in runs)]
     moving = [channel for channel in there if changes(runs, channel)] or there[:1]
     if moving:
-        yield f"body_{name}", drawn(runs, moving, name)
+        yield f"body_{name}", partial(drawn, runs, moving, name)
 
 
 def force(runs: list[Shown], name: str) -> Figures:
@@ -44,7 +45,7 @@ def force(runs: list[Shown], name: str) -> Figures:
         if shown.run.unit(channel) == unit and shown.run.sizes[channel] in (1, 3)
     ]
     if any(shown.run.unit(channel) in FORCES for channel in channels):
-        yield f"force_{name}", drawn(runs, channels, name)
+        yield f"force_{name}", partial(drawn, runs, channels, name)
 
 
 def pull(runs: list[Shown], name: str) -> Figures:
@@ -53,7 +54,7 @@ def pull(runs: list[Shown], name: str) -> Figures:
     words = elements.load(shown.run.parts[name].type).loads
     channels = [f"{name}.{word}" for word in words if shown.has(f"{name}.{word}")]
     if channels:
-        yield f"force_{name}", drawn(runs, channels, name)
+        yield f"force_{name}", partial(drawn, runs, channels, name)
 
 
 def changes(runs: list[Shown], channel: str) -> bool:

@@ -1,6 +1,7 @@
 """The figures of a run, of whatever it contains; of several runs, overlaid or side by side."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -33,17 +34,22 @@ def draw(runs: list[Shown], folder: Path) -> list[Path]:
 
 def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
     """File names and figures."""
+    return ((name, make()) for name, make in planned(runs))
+
+
+def planned(runs: list[Shown]) -> Iterator[tuple[str, Callable[[], Any]]]:
+    """File names, and what makes the figures."""
     for sensor in parts(runs, "sensors"):
-        yield f"motion_{sensor}", motion(runs, sensor)
+        yield f"motion_{sensor}", partial(motion, runs, sensor)
     for body in parts(runs, "bodies"):
         yield from components.body(runs, body)
     for bar in parts(runs, "bodies"):
         if some(runs, f"{bar}.deflection", f"{bar}.node0.position"):
-            yield f"bar_{bar}", bars.forces(runs, bar)
-            yield f"shapes_{bar}", bars.shapes(runs, bar)
+            yield f"bar_{bar}", partial(bars.forces, runs, bar)
+            yield f"shapes_{bar}", partial(bars.shapes, runs, bar)
     for drive in parts(runs, "drives"):
         if some(runs, f"{drive}.force"):
-            yield f"drive_{drive}", drive_force(runs, drive)
+            yield f"drive_{drive}", partial(drive_force, runs, drive)
     for force in parts(runs, "forces"):
         if force not in contacts(runs):
             yield from components.force(runs, force)
@@ -51,18 +57,18 @@ def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
         if joint not in contacts(runs):
             yield from components.pull(runs, joint)
     for name in contacts(runs):
-        yield f"contact_{name}", contact_force(runs, name)
+        yield f"contact_{name}", partial(contact_force, runs, name)
         if some(runs, f"{name}.eccentricity_x", f"{name}.eccentricity_y"):
-            yield f"orbit_{name}", orbit(runs, name)
+            yield f"orbit_{name}", partial(orbit, runs, name)
             there = [shown for shown in runs if name in shown.run.contacts]
             if any(len(shown.run.impacts(name).time) for shown in there):
-                yield f"impact_{name}", impact_map(there, name)
+                yield f"impact_{name}", partial(impact_map, there, name)
     for name in dict.fromkeys(n for shown in runs for n in shown.run.phase):
-        yield f"phase_{name}", portrait(runs, name)
+        yield f"phase_{name}", partial(portrait, runs, name)
     for name in dict.fromkeys(n for shown in runs for n in shown.run.poincare):
-        yield f"poincare_{name}", section(runs, name)
+        yield f"poincare_{name}", partial(section, runs, name)
     if some(runs, "energy.kinetic", "energy.residual"):
-        yield "energy", energy(runs)
+        yield "energy", partial(energy, runs)
 
 
 def some(runs: list[Shown], *channels: str) -> list[Shown]:
