@@ -23,6 +23,7 @@ SHOWN = 4  # coordinates of joints in a sentence
 FAR = {"angle": 0.5, "stroke": 0.1}  # rad, and of the mechanism's size: no longer where it was put
 NEXT_TO = 100.0  # of the time in which functions are differentiated: for rates of channels
 SOON = 1e-3  # of the time between rows: what turned round may not slide in full so soon
+SAME = 1e-13  # of the time: what is nearer is one place
 BOTH = 1.5  # signs beyond it are those of places where nothing is free
 
 
@@ -60,8 +61,22 @@ class Log:
         elif change.kind == WATCH:
             change = self.with_rate(place, change)
             kind, row = self.happened(place, change)
-        if row >= 0:
+        if row >= 0 and not (change.kind == CONTACT and self.undone(place.t, row)):
             self.line(place.t, kind, row, change.rate)
+
+    def undone(self, t: float, row: int) -> bool:
+        """Whether a contact closes and opens at one place, in either order: its last line goes.
+
+        Where two close at once, rounding may close one, find the balance of both open, and close
+        both.
+        """
+        last = [k for k, line in enumerate(self.events)
+                if line[2] == row and line[1] in (rec.ONSET, rec.SEPARATION)][-1:]  # fmt: skip
+        if not last or abs(t - self.events[last[0]][0]) > SAME * abs(t):
+            return False
+        del self.events[last[0]]
+        self.count -= 1
+        return True
 
     def line(self, t: float, kind: float, row: int, rate: float) -> None:
         """A line of the table, once."""
