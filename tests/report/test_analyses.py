@@ -478,6 +478,7 @@ def test_what_does_not_fit_is_refused(paths, tmp_path):
     with pytest.raises(UsageError, match="--spectrum is not for a sweep") as error:
         analysed([tmp_path], tmp_path / "o", Asked(spectrum=("stroke",)))
     assert str(Path("cases") / "*.h5") in error.value.hint
+    assert f"`trsim run {tmp_path} CASE` makes one" in error.value.hint
     with pytest.raises(UsageError, match="not the only thing given"):
         analysed([tmp_path, *paths], tmp_path / "o", Asked())
     with pytest.raises(FileError, match="file"):

@@ -146,7 +146,10 @@ def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
     if wrong:
         files = f"result files, such as {Path(studies[0]) / 'cases' / '*.h5'}" if studies else ""
         of, rather = ("a sweep", files) if studies else ("result files", "a sweep")
-        raise UsageError(f"--{wrong[0]} is not for {of}", f"It is for {rather}.")
+        hint = f"It is for {rather}."
+        if studies and not any(Path(studies[0]).glob("cases/*.h5")):
+            hint += f" This sweep kept none; `trsim run {studies[0]} CASE` makes one."
+        raise UsageError(f"--{wrong[0]} is not for {of}", hint)
     if asked.over and not studies:
         raise UsageError("--over is not for result files", "It is for a sweep.")
     if (
