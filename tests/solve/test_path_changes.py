@@ -34,7 +34,14 @@ def test_what_closes_and_opens_at_one_place_is_told_as_it_stays():
     """Of two contacts that close at once one may open again before both do."""
     log = Log.__new__(Log)
     log.looks, log.events, log.count = SimpleNamespace(closed={}), [], 0
-    for t, to in ((1.0, 1.0), (2.0, -1.0), (3.0, 1.0), (3.0 + 4e-14, -1.0), (3.0 + 8e-14, 1.0)):
+    for t, to in (
+        (1.0, 1.0),
+        (1.0, 1.0),
+        (2.0, -1.0),
+        (3.0, 1.0),
+        (3.0 + 4e-14, -1.0),
+        (3.0 + 8e-14, 1.0),
+    ):
         log.note(SimpleNamespace(t=t), Change(CONTACT, 3, to))
     told = [(round(line[0], 6), line[1]) for line in log.events]
     assert told == [(1.0, ONSET), (2.0, SEPARATION), (3.0, ONSET)]

@@ -6,12 +6,13 @@
 from ctypes import addressof, c_char
 from typing import Any
 
-_AT = c_char * 0  # of no length: any buffer holds it, an empty one too
+# of no length: any buffer holds it, an empty one too; refused unless contiguous and writable
+at = (c_char * 0).from_buffer
 
 
 def address(array: Any) -> int:
     """The address of the first entry of a contiguous array."""
     try:
-        return addressof(_AT.from_buffer(array))
+        return addressof(at(array))
     except TypeError:  # it cannot be written to
         return int(array.ctypes.data)

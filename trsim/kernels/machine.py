@@ -17,14 +17,14 @@ with an array as (0, 0, size, bytes of an entry, data, shape, strides).
 import ctypes
 from collections.abc import Callable
 from contextlib import suppress
-from ctypes import addressof, byref, c_char, c_void_p
+from ctypes import addressof, byref, c_void_p
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
 from trsim.errors import FileError
 from trsim.kernels import carried, fingerprint, kept
-from trsim.kernels.buffer import address
+from trsim.kernels.buffer import address, at
 from trsim.kernels.kept import folder
 from trsim.kernels.lazy import PYTHON, Lazy
 from trsim.kernels.lock import turn
@@ -40,7 +40,6 @@ LETTERS = {"float64": "d", "int64": "lq", "complex128": "D"}  # numpy's
 RECORD, NUMBER = -1, 0  # instead of the dimensions of an argument
 UNREAD = byref(c_void_p())  # where what a function raises is put: its status says enough
 ERRORS = (-1,)  # of a status; above 0: an exception of the function's own
-_at = (c_char * 0).from_buffer  # of no length: any buffer holds it
 made: list["Compiled"] = []  # all functions of modules that were imported
 
 
@@ -204,7 +203,7 @@ def _array(value: Any, dimensions: int, letters: str) -> tuple[int, ...]:
     if len(shape) != dimensions or kind.char not in letters:
         raise TypeError(f"wanted {dimensions} of {letters}, got {len(shape)} dimensions of {kind}")
     try:
-        data = addressof(_at(value))  # refused unless it is contiguous and may be written to
+        data = addressof(at(value))  # refused unless it is contiguous and may be written to
     except TypeError:
         if not value.flags.c_contiguous:
             raise TypeError("an array must be contiguous") from None

@@ -16,12 +16,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from ctypes import addressof, c_char
+from ctypes import addressof
 from functools import cache
 from operator import setitem
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from trsim.kernels.buffer import address
+from trsim.kernels.buffer import address, at
 from trsim.kernels.lazy import PYTHON
 from trsim.kernels.signatures import KINDS, Kind
 
@@ -72,7 +72,6 @@ __all__ = [
 
 WORDS = 3  # per field
 LINE = 8  # words: where one array ends and the next begins, there is a new line of the cache
-_at = (c_char * 0).from_buffer  # of no length; refused unless contiguous and writable
 HOLDERS = {"F8": "clock", "I8": "count"}  # the arrays of numbers that change
 
 
@@ -163,7 +162,7 @@ class Packed:
             word = field.word
             if field.dimensions:
                 try:  # as nearly all are what compiled code can work on
-                    start = addressof(_at(value)) if value.dtype is field.dtype else 0
+                    start = addressof(at(value)) if value.dtype is field.dtype else 0
                 except (AttributeError, TypeError):
                     start = 0
                 if not start:
@@ -222,9 +221,6 @@ def _fields(record: Any) -> dict[str, _Field]:
 
 def _check(field: _Field, shape: tuple[int, ...]) -> None:
     """Raise TypeError where an array is not as compiled code takes it to be."""
-    _, _, dimensions, _, _, columns, number = field
-    if len(shape) == dimensions and not number and (not columns or shape[1] == columns):
-        return
     if len(shape) != field.dimensions:
         raise TypeError(f"{field.name}: {len(shape)} dimensions instead of {field.dimensions}")
     if field.number and shape[0] != field.number:

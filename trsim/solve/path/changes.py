@@ -32,6 +32,7 @@ from trsim.solve.path.place import Equations, Place
 
 Array = NDArray[np.float64]
 
+SAME = 1e-13  # of the path: where a change is, and whether it has been reached
 AT_REST = 1e-6  # of the mechanism's size in the time of the path: a slower sliding is none
 FLAT = 1e-9  # of the largest eigenvalue: one that is rounding
 NEARLY = 0.01  # of an arch that a gap makes in a step: what its cubic may be wrong by

@@ -25,7 +25,7 @@ from trsim.solve.march.features import next_time
 from trsim.solve.outcome import Block, Outcome, settings
 from trsim.solve.path.begin import begin, check
 from trsim.solve.path.between import Between
-from trsim.solve.path.changes import RUB, WATCH, Change, Looks, bottoms, side_of, stability
+from trsim.solve.path.changes import RUB, SAME, WATCH, Change, Looks, bottoms, side_of, stability
 from trsim.solve.path.fold import fold
 from trsim.solve.path.headings import (
     CLOSE_AHEAD,
@@ -54,7 +54,6 @@ BENT_TURNING = 3e-4  # the same where friction turns, whose direction is that of
 PARTED, STILL = 3, 0.9  # steps halved for that to no effect, of what the first one was off by
 BESIDE = 1e-6  # of the mechanism's size: the same, however long the step is
 SHORTEST = 1e-12  # of the path: a step
-SAME = 1e-13  # of the path: where a change is, and whether it has been reached
 STEADY = 0.2  # of the time between rows: places that are nearer do not tell what inertia would do
 FULL = 1.0 - 1e-6  # of the largest friction there can be: less is no full sliding
 SEEN = 0.01  # of the path: in that time what slides goes further than full sliding takes

@@ -11,7 +11,7 @@ from trsim.assemble.equations import poses
 from trsim.assemble.switches import CHANNEL, TIME, UserEvent
 from trsim.laws.functions import HELD_OF_TABLE
 from trsim.solve.march import record as rec
-from trsim.solve.path.changes import CONTACT, PIECE, RIM, RUB, SENSE, WATCH, Change, Looks
+from trsim.solve.path.changes import CONTACT, PIECE, RIM, RUB, SAME, SENSE, WATCH, Change, Looks
 from trsim.solve.path.place import Place
 from trsim.solve.path.results import DAMPERS, INERTIA, Results
 from trsim.statuses import Ended
@@ -23,7 +23,6 @@ SHOWN = 4  # coordinates of joints in a sentence
 FAR = {"angle": 0.5, "stroke": 0.1}  # rad, and of the mechanism's size: no longer where it was put
 NEXT_TO = 100.0  # of the time in which functions are differentiated: for rates of channels
 SOON = 1e-3  # of the time between rows: what turned round may not slide in full so soon
-SAME = 1e-13  # of the time: what is nearer is one place
 BOTH = 1.5  # signs beyond it are those of places where nothing is free
 
 
@@ -61,10 +60,10 @@ class Log:
         elif change.kind == WATCH:
             change = self.with_rate(place, change)
             kind, row = self.happened(place, change)
-        if row >= 0 and not (change.kind == CONTACT and self.undone(place.t, row)):
+        if row >= 0 and not (change.kind == CONTACT and self.undone(place.t, kind, row)):
             self.line(place.t, kind, row, change.rate)
 
-    def undone(self, t: float, row: int) -> bool:
+    def undone(self, t: float, kind: float, row: int) -> bool:
         """Whether a contact closes and opens at one place, in either order: its last line goes.
 
         Where two close at once, rounding may close one, find the balance of both open, and close
@@ -72,7 +71,9 @@ class Log:
         """
         last = [k for k, line in enumerate(self.events)
                 if line[2] == row and line[1] in (rec.ONSET, rec.SEPARATION)][-1:]  # fmt: skip
-        if not last or abs(t - self.events[last[0]][0]) > SAME * abs(t):
+        if not last or self.events[last[0]][1] == kind:
+            return False
+        if abs(t - self.events[last[0]][0]) > SAME * abs(t):
             return False
         del self.events[last[0]]
         self.count -= 1
