@@ -9,7 +9,10 @@ NAMES = (
     *("slider_crank", "andrews", "pendulum", "windows", "chain", "stiff_chain", "chains"),
     "contacts",
     *("flexible_pendulum", "spatial", "turns"),
+    *("norm", "works", "kinematic", "beams", "user_events", "sections", "symmetry", "certify"),
+    *("lyapunov", "jam"),
 )
+LONG = ("tolerances", "verdicts")  # ten minutes and more: run by their names only
 
 
 def main() -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from benchmarks.measure import ROOT, Run, run
 from benchmarks.problems import LENGTH, bending_chain, chain
+from benchmarks.tables import head, row
 from benchmarks.work_precision import Problem, at_bounds, of_text, table, varied
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import SCENE, compiled
@@ -47,8 +48,9 @@ def alone(mechanism: Any) -> float:
     return 1e6 * (time.process_time() - start) / times
 
 
-def costs(text: Callable[[int], str]) -> None:
-    """Print the CPU time of assembling, and per right-hand side, all that a step does included.
+def costs(text: Callable[[int], str]) -> list[str]:
+    """The CPU time of assembling, and per right-hand side, all that a step does included: printed,
+    and as cells of a table.
 
     The lengths are run in turn, so that a busy minute of the machine meets all of them.
     """
@@ -65,19 +67,23 @@ def costs(text: Callable[[int], str]) -> None:
             numbers = run(varied(lean[n], BOUND), models[n]).outcome.statistics
             each[n].append(1e6 * numbers["integration_cpu"] / numbers["evaluations"])
             bare[n].append(alone(models[n]))
+    cells = []
     for n in SIZES:
         took = [cost / n for cost in each[n][1:]]
+        cells.append(f"{min(took):.2f} ({median(took):.2f})")
         print(f"  n = {n:3d}: assembled in {built[n]:.2f} s; us per rod and right-hand side "
               f"{median(took):.2f}, least {min(took):.2f}; equations alone "
               f"{min(bare[n][1:]) / n:.2f}")  # fmt: skip
     ratio = median(large / small for small, large in zip(each[40][1:], each[160][1:], strict=True))
     print(f"  n = 160 over n = 40: {ratio:.2f} times the cost per right-hand side\n")
+    return [*cells, f"{ratio:.2f} times"]
 
 
 def main() -> None:
     from benchmarks.peers import compare
 
     known = json.loads((DATA / "p5_chains.json").read_text())
+    measured = {}
     for kind, text in (("straight", chain), ("bending", bending_chain)):
         for n in SIZES:
             reference = np.array(known[kind][str(n)])
@@ -94,4 +100,7 @@ def main() -> None:
             compare("chain" if kind == "straight" else "bending_chain", found, "m", n)
             print()
         print(f"  {kind}, tolerance {BOUND:.0e}")
-        costs(text)
+        measured[kind] = costs(text)
+    head("", *(f"n = {n}" for n in SIZES), "n = 160 over n = 40")
+    for kind, cells in measured.items():
+        row(f"{kind}, us per rod", *cells)

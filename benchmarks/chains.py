@@ -10,6 +10,7 @@ import numpy as np
 
 from benchmarks.measure import run
 from benchmarks.problems import hung_chains
+from benchmarks.tables import head, row
 from trsim.assemble.equations import constraints, evaluate, forces, poses
 from trsim.assemble.linear import factorise, solve
 from trsim.assemble.schur import rows
@@ -113,14 +114,14 @@ def compared(text: Callable[[int], str], sizes: tuple[int, ...], method: str) ->
     for _ in range(1 + ROUNDS):
         for n in sizes:
             found[n].append(costs(read[n], models[n], method))
-    print("  us: chains  rows   step  per chain | evaluation  per chain | equations  elements  "
-          "matrix  factors  solution | assembled s")  # fmt: skip
+    head("chains, rows", "step", "per chain", "evaluation", "per chain", "equations alone",
+         "elements", "matrix", "factors", "solution", "assembled s")  # fmt: skip
     middle = {n: Costs(*map(median, zip(*found[n][1:], strict=True))) for n in sizes}
     for n, c in middle.items():
-        print(f"  {n:11d} {models[n].model.m:5d} {c.step:6.0f} {c.step / n:10.1f} | "
-              f"{c.evaluation:10.2f} {c.evaluation / n:10.2f} | {c.equations:9.2f} "
-              f"{c.elements:9.2f} {c.matrix:7.2f} {c.factors:8.2f} {c.solution:9.2f} | "
-              f"{built[n]:11.2f}")  # fmt: skip
+        parts = (c.equations, c.elements, c.matrix, c.factors, c.solution)
+        row(f"{n}, {models[n].model.m}", f"{c.step:.0f}", f"{c.step / n:.1f}",
+            f"{c.evaluation:.2f}", f"{c.evaluation / n:.2f}", *(f"{x:.2f}" for x in parts),
+            f"{built[n]:.2f}")  # fmt: skip
     for few, many in pairwise(sizes):
         growth = middle[many].step / middle[few].step
         print(f"  {many} chains over {few}: {growth:.2f} times the cost of a step")

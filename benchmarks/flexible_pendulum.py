@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.measure import ROOT, SCENARIOS, Run
+from benchmarks.tables import head, power, row
 from benchmarks.work_precision import Problem, at_bounds, of_file, table
 
 DATA = ROOT / "tests" / "data"
@@ -30,6 +31,7 @@ def error(r: Run, n: int) -> float:
 def main() -> None:
     from benchmarks.peers import compare
 
+    every = []
     for n in SIZES:
         best = []
         for method in METHODS:
@@ -39,5 +41,9 @@ def main() -> None:
             found = table(problem, "m", tolerances=TOLERANCES, starts=(None, 0.6, 1.7), repeats=2)
             at_bounds(found, (BOUND,), "m")
             best += found
+            every += [(n, method, p) for p in found]
         compare("flexible_pendulum", best, "m", n)
         print()
+    head("elements", "method", "tolerance", "error m", "CPU s", "evaluations")
+    for n, method, p in every:
+        row(n, method, power(p.tolerance, 0), power(p.error), f"{p.cpu:.3f}", p.evaluations)

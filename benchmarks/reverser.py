@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from benchmarks.measure import SCENARIOS, Run, run
+from benchmarks.tables import head, power, row
 from benchmarks.work_precision import varied
 from trsim.analyse.trajectory import own_first_step
 
@@ -133,14 +134,14 @@ def told(of: tuple[str, float, float]) -> str:
 
 def main(cases: Sequence[Case] = CASES) -> None:
     """Print the table."""
-    print("  scenario               tolerance   CPU s   evaluations   "
-          "peaks, loads, fluctuations off by %")  # fmt: skip
+    head("scenario", "tolerance", "CPU s", "evaluations", "peaks off by %", "loads %",
+         "fluctuations %")  # fmt: skip
     for case in cases:
         true = ensemble(case.name, case.reference, case.members)
         for tolerance in case.tolerances:
             found = ensemble(case.name, tolerance, case.members)
             off = [told(worst(*pair)) for pair in zip(found.kinds, true.kinds, strict=True)]
-            print(f"  {case.name:22s} {tolerance:9.0e} {found.cpu:7.3f} {found.evaluations:13d}   "
-                  f"{', '.join(off)}", flush=True)  # fmt: skip
+            row(case.name, power(tolerance, 0), f"{found.cpu:.3f}", found.evaluations, *off)
         many = f"{case.members} runs" if case.members > 1 else "one run"
-        print(f"    reference: {many} at {case.reference:.0e}, {true.cpu:.3f} s each")
+        row(f"{case.name}, reference", power(case.reference, 0), f"{true.cpu:.3f}",
+            true.evaluations, many, "", "")  # fmt: skip

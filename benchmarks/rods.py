@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from benchmarks.measure import SCENARIOS, Run, run
+from benchmarks.tables import head, row
 
 RODS = (
     "rigid_rod_0.5kg",
@@ -24,6 +25,7 @@ RODS = (
 PINS = ("A", "B", "Q")
 CLEARANCES = (0.294, 0.297, 0.3, 0.303, 0.306)  # mm
 FROM, UNTIL = 0.3, 0.98  # s
+NARROW = 0.03  # of the mean: half ranges below it are left out
 
 
 class Quantity(NamedTuple):
@@ -65,12 +67,12 @@ def turned(r: Run, pin: str, angle: Any) -> float:
 
 
 QUANTITIES = (
-    Quantity("peak N", peak, "8.0f"),
-    Quantity("door rad/s", fluctuates("door_angle.rate"), "8.3f"),
-    Quantity("door rad/s2", fluctuates("door.angular_acceleration", 2), "8.0f"),
-    Quantity("drive N", fluctuates("actuator.force"), "8.0f"),
-    Quantity("orbit um", orbit, "8.0f"),
-    Quantity("angle deg", turned, "8.3f"),
+    Quantity("peak force N", peak, ".0f"),
+    Quantity("door's rate rad/s", fluctuates("door_angle.rate"), ".3f"),
+    Quantity("its acceleration rad/s^2", fluctuates("door.angular_acceleration", 2), ".0f"),
+    Quantity("drive N", fluctuates("actuator.force"), ".0f"),
+    Quantity("orbit um", orbit, ".0f"),
+    Quantity("angle deg", turned, ".2f"),
 )
 
 
@@ -90,11 +92,9 @@ def runs(rod: str, pin: str) -> tuple[list[Run], float]:
 
 
 def main() -> None:
-    """Print the tables."""
+    """Print the table."""
+    head("0.3 mm at", "rod", *(q.name for q in QUANTITIES), "CPU s")
     for pin in PINS:
-        print(f"  clearance at {pin}")
-        heads = "".join(f"{q.name:>16s}" for q in QUANTITIES)
-        print(f"  {'':26s}{heads}   CPU s")
         angles: list[Any] = []
         for rod in RODS:
             several, cpu = runs(rod, pin)
@@ -103,9 +103,10 @@ def main() -> None:
             for q in QUANTITIES:
                 values = [q.of(r, pin, a) for r, a in zip(several, angles, strict=True)]
                 half = 0.5 * (max(values) - min(values))
-                cells.append(f"{np.mean(values):{q.form}} +-{half:{q.form.replace('8', '5')}}")
-            print(f"  {rod:26s}{''.join(cells)} {cpu:7.2f}", flush=True)
-        print()
+                mean = float(np.mean(values))
+                told = f"{mean:{q.form}}"
+                cells.append(told if half < NARROW * mean else f"{told} +- {half:{q.form}}")
+            row(pin, rod, *cells, f"{cpu:.2f}")
 
 
 if __name__ == "__main__":

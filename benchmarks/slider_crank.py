@@ -6,6 +6,7 @@ import numpy as np
 
 from benchmarks.measure import ROOT, Run
 from benchmarks.problems import VALIDATION
+from benchmarks.tables import head, power, row
 from benchmarks.work_precision import Point, Problem, at_bounds, cheapest, of_file, slope, table
 
 DATA = ROOT / "tests" / "data"
@@ -34,6 +35,7 @@ def by_hand(reference: np.ndarray, coefficient: float) -> list[Point]:
 def main() -> None:
     from benchmarks.peers import compare
 
+    both = []
     for variant, coefficient in FRICTION.items():
         reference = np.genfromtxt(
             DATA / f"p1_{variant}.csv", delimiter=",", names=True, skip_header=3
@@ -47,6 +49,7 @@ def main() -> None:
         path = VALIDATION / f"slider_crank_{variant}.yaml"
         rows = ("output.every=4e-6", 'output.channels=["slider.velocity"]')
         found = table(Problem(of_file(path, "solver.end=3 ms"), error, rows), "-")
+        both.append(found)
         at_bounds(found, BOUNDS, "")
         hand = by_hand(reference, coefficient)
         print("  by hand, two degrees of freedom (benchmarks/minimal.py)")
@@ -61,3 +64,7 @@ def main() -> None:
         if variant == "frictionless":
             compare("slider_crank", found, "")
         print()
+    head("tolerance", "frictionless: error", "evaluations", "friction: error", "evaluations")
+    for pair in zip(*both, strict=True):
+        cells = ((power(p.error), p.evaluations) for p in pair)
+        row(power(pair[0].tolerance, 0), *(cell for two in cells for cell in two))

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from benchmarks.measure import SCENARIOS, run, trsim
 from benchmarks.startup import REPEATS, took
+from benchmarks.tables import head, power, row
 from trsim.system import processors
 
 FOLDER = SCENARIOS / "thrust_reverser"
@@ -28,20 +29,20 @@ ROUNDS = 3
 
 def commands() -> None:
     """Print what a user waits for."""
-    print(f"  {'':44s} {'wall s':>8s} {'CPU s':>8s} {'of it integration':>18s}")
+    head("whole commands", "wall s", "CPU s", "of it integration")
     with TemporaryDirectory() as folder:
         out = str(Path(folder) / "run.h5")
         command = trsim("run", str(FOLDER / "spatial_synchronous.yaml"), "-q", "--json", "-o", out)
         took(command)
         once = [took(command) for _ in range(REPEATS)]
         wall, cpu, integration = (median(column) for column in zip(*once, strict=True))
-        print(f"  {f'equal speeds, median of {REPEATS}':44s} {wall:8.2f} {cpu:8.2f} "
-              f"{integration:18.2f}")  # fmt: skip
+        row(f"the synchronous run, median of {REPEATS}", f"{wall:.2f}", f"{cpu:.2f}",
+            f"{integration:.2f}")  # fmt: skip
         for k in range(ROUNDS):
             sweep = ("sweep", str(FOLDER / "spatial_asynchronous.yaml"), "-q", "-o")
             whole = took(trsim(*sweep, str(Path(folder) / f"sweep_{k}")))
             label = f"the twelve asynchronous runs, {processors()} processors"
-            print(f"  {label:44s} {whole.wall:8.1f} {whole.cpu:8.1f}", flush=True)
+            row(label, f"{whole.wall:.1f}", f"{whole.cpu:.1f}", "")
 
 
 class Measured(NamedTuple):
@@ -70,7 +71,8 @@ def measured(sets: tuple[str, ...], tolerance: str) -> Measured:
 
 def precision() -> None:
     """Print errors over tolerances."""
-    print(f"\n  {'':24s} tolerance   CPU s   steps  evaluations  peaks    forces   energy residual")
+    print()
+    head("", "tolerance", "CPU s", "steps", "evaluations", "peaks", "forces", "energy residual")
     for label, sets in CASES.items():
         exact = measured(sets, REFERENCE)
         for tolerance in TOLERANCES:
@@ -78,9 +80,17 @@ def precision() -> None:
             peaks = np.abs(found.peaks / exact.peaks - 1.0).max()
             forces = np.abs(found.forces - exact.forces).max() / np.abs(exact.forces).max()
             numbers = found.numbers
-            print(f"  {label:24s} {tolerance:>9s} {found.cpu:7.2f} {numbers['steps']:7d} "
-                  f"{numbers['evaluations']:12d}  {peaks:.1e}  {forces:.1e}  "
-                  f"{numbers['energy_residual_relative']:.0e}", flush=True)  # fmt: skip
+            row(
+                label,
+                tolerance,
+                f"{found.cpu:.2f}",
+                numbers["steps"],
+                numbers["evaluations"],
+                power(peaks),
+                power(forces),
+                power(numbers["energy_residual_relative"], 0),
+            )
+            label = ""  # once is enough
 
 
 def main() -> None:

@@ -16,6 +16,7 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from benchmarks.measure import ROOT, SCENARIOS, trsim
+from benchmarks.tables import head, row
 
 REVERSER = SCENARIOS / "thrust_reverser" / "clearance_ab_0.3mm.yaml"
 REPEATS = 5
@@ -50,9 +51,10 @@ def median(command: list[str], code: int = 0) -> Took:
     return Took(*map(statistics.median, columns))
 
 
-def told(label: str, took: Took) -> None:
-    overhead = f"{took.wall - took.integration:10.2f}" if took.integration else ""
-    print(f"  {label:44s} {took.wall:8.2f} {took.cpu:8.2f}{overhead}")
+def told(label: str, took: Took, aim: str = "") -> None:
+    """A line: what is aimed at is the overhead of runs, the wall time of other commands."""
+    overhead = f"{took.wall - took.integration:.2f}" if took.integration else ""
+    row(label, f"{took.wall:.2f}", f"{took.cpu:.2f}", overhead, aim)
 
 
 def main() -> None:
@@ -61,11 +63,11 @@ def main() -> None:
         wrong = Path(folder) / "wrong.yaml"
         wrong.write_text(REVERSER.parent.joinpath("mechanism.yaml").read_text() + "\nsolvr: {}\n")
         run = trsim("run", str(REVERSER), "-q", "--json", "-o", f"{folder}/run.h5")
-        print(f"  {'':44s} {'wall s':>8s} {'CPU s':>8s}  overhead s")
+        head("", "wall s", "CPU s", "not integration s", "aim s")
         told("python -c pass, for the speed of the machine", median([sys.executable, "-c", "pass"]))
-        told("trsim --help", median(trsim("--help")))
-        told("a schema error", median(trsim("check", str(wrong)), 3))
-        told("trsim check, reverser", median(trsim("check", str(REVERSER))))
+        told("trsim --help", median(trsim("--help")), "0.1")
+        told("a schema error", median(trsim("check", str(wrong)), 3), "0.4")
+        told("trsim check, reverser", median(trsim("check", str(REVERSER))), "0.8")
         warm, cold = median(run), took(run, cache=f"{folder}/cache")
-        told("trsim run, reverser, 1 s", warm)
-        told("the same, compiling (empty cache)", cold._replace(integration=warm.integration))
+        told("trsim run, reverser, 1 s", warm, "1.0")
+        told("the same, compiling (empty cache)", cold._replace(integration=warm.integration), "15")

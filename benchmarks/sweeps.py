@@ -11,6 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from benchmarks.measure import ROOT, SCENARIOS, trsim
+from benchmarks.tables import head, row
 from trsim.system import processors
 
 SCENARIO = str(SCENARIOS / "thrust_reverser" / "clearance_ab_0.3mm.yaml")
@@ -32,17 +33,16 @@ def grid(n: int, m: int) -> tuple[str, ...]:
 
 
 def main() -> None:
-    timed("run", SCENARIO, *FAST, "-o", "runs/warm.h5")
+    head("what", "aim", "measured")
     with TemporaryDirectory() as folder:
+        timed("run", SCENARIO, *FAST, "-o", str(Path(folder) / "warm.h5"))
         whole = ("sweep", SCENARIO, *grid(20, 10), "-o", str(Path(folder) / "whole"))
         seconds, told = timed(*whole)
-        print(
-            f"  200 cases of 1 s, 10 001 rows each: {seconds:.0f} s, {told['counts']}", flush=True
-        )
+        row("200 cases of 1 s, 10 001 rows each", "4 min", f"{seconds:.0f} s, {told['counts']}")
         seconds, told = timed(*whole)
-        print(f"  the same again: {seconds:.2f} s, {told['ran']} run", flush=True)
+        row("the same again", "2 s", f"{seconds:.2f} s, {told['ran']} run")
         seconds, _ = timed("status", str(Path(folder) / "whole"))
-        print(f"  their status: {seconds:.2f} s", flush=True)
+        row("their status", "", f"{seconds:.2f} s")
         part = (*grid(10, 4), *FAST)
         alone = 0.0
         for jobs in sorted({1, processors(), 8}):
@@ -51,11 +51,12 @@ def main() -> None:
             alone = alone or seconds
             count = min(jobs, processors())
             told = f"efficiency {alone / seconds / count:.2f} on {count} processors"
-            print(f"  40 short cases, {jobs} workers: {seconds:.1f} s, {told}", flush=True)
+            row(f"40 short cases, {jobs} workers", "0.85", f"{seconds:.1f} s, {told}")
         out = ("-o", f"{folder}/plan")
         seconds, told = timed("sweep", SCENARIO, *grid(100, 100), "--explain", "--shard",
                               "1/10000", *FAST, *out)  # fmt: skip
-        print(f"  10 000 cases made and checked, one of them run: {seconds:.1f} s", flush=True)
+        row("10 000 cases made and checked, one of them run", "5 s without the run",
+            f"{seconds:.1f} s")  # fmt: skip
         many(Path(folder) / "many")
 
 
@@ -64,8 +65,8 @@ def many(folder: Path) -> None:
     short = ("--set", "solver.end=1 ms", "--set", "output.every=1 ms")
     command = ("sweep", SCENARIO, *grid(50, 20), *short, "-o", str(folder))
     seconds, _ = timed(*command)
-    print(f"  1 000 cases of 1 ms: {seconds:.0f} s", flush=True)
+    row("1 000 cases of 1 ms", "", f"{seconds:.0f} s")
     seconds, told = timed(*command)
-    print(f"  the same again: {seconds:.2f} s, {told['ran']} run", flush=True)
+    row("the same again", "2 s", f"{seconds:.2f} s, {told['ran']} run")
     seconds, _ = timed("status", str(folder))
-    print(f"  their status: {seconds:.2f} s", flush=True)
+    row("their status", "1 s", f"{seconds:.2f} s")

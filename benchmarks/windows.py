@@ -7,6 +7,7 @@ import numpy as np
 
 from benchmarks.measure import ROOT, Run
 from benchmarks.problems import windows
+from benchmarks.tables import head, power, row
 from benchmarks.work_precision import Point, Problem, at_bounds, cheapest, of_text, table
 
 DATA = ROOT / "tests" / "data"
@@ -30,11 +31,13 @@ def main() -> None:
     from benchmarks.peers import compare
 
     at_bound: dict[int, Point | None] = {}
+    every = []
     for n in SIZES:
         print(f"  N = {n}")
         few = {"starts": (None, 1.25), "repeats": 2} if n == 40 else {}
         problem = Problem(of_text(windows(n)), energy_error, (), partial(place_error, n=n))
         found = table(problem, "J", "B0 m", tolerances=TOLERANCES, **few)
+        every.append(found)
         at_bounds(found, (BOUND,), "J")
         at_bound[n] = cheapest(found, BOUND)
         compare("windows", found, "J", n)
@@ -43,3 +46,7 @@ def main() -> None:
     if small and large:
         print(f"  N = 40 over N = 10 at {BOUND:g} J: {large.cpu / small.cpu:.1f} times the cost, "
               f"{large.each / small.each:.1f} times per evaluation")  # fmt: skip
+    head("tolerance", *(told for n in SIZES for told in (f"N = {n}: energy J", "B0 m")))
+    for several in zip(*every, strict=True):
+        cells = ((power(p.error), power(p.other)) for p in several)
+        row(power(several[0].tolerance, 0), *(cell for two in cells for cell in two))

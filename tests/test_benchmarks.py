@@ -4,10 +4,10 @@ from importlib import import_module
 
 import pytest
 
-from benchmarks.__main__ import NAMES
+from benchmarks.__main__ import LONG, NAMES
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", (*NAMES, *LONG))
 def test_each_can_begin(name):
     module = import_module(f"benchmarks.{name}")
     assert callable(module.main)

@@ -31,10 +31,9 @@ def bench(name: str, *of: str, way: Way = "copied", asked: str = TIMES) -> Made:
     return Made(f"python -m benchmarks {name}", (*SOLVER, *BENCH, file, *of), way, asked)
 
 
-def tested(*names: str, of: tuple[str, ...] = ()) -> Made:
-    """Numbers that tests print."""
-    files = tuple(f"tests/{name}.py" for name in names)
-    return Made(f"python -m pytest -s {' '.join(files)}", (*SOLVER, *files, *of), "copied", HAND)
+def scenes(name: str, *tests: str, asked: str = "") -> Made:
+    """A module of benchmarks that measures scenes of tests."""
+    return bench(name, *(f"tests/{test}.py" for test in tests), way="tables", asked=asked)
 
 
 MADE: dict[str, Made] = {
@@ -57,10 +56,10 @@ MADE: dict[str, Made] = {
     "reverser_table": bench("reverser_table", *REVERSER, way="tables", asked=""),
     "reverser_steps": bench("reverser_steps", *REVERSER, way="tables", asked=""),
     "skipping": bench("skipping", *REVERSER, way="tables"),
-    "slider_crank": bench("slider_crank", "benchmarks/minimal.py"),
-    "reverser": bench("reverser", *REVERSER),
-    "rods": bench("rods", *REVERSER),
-    "spatial": bench("spatial", *REVERSER),
+    "slider_crank": bench("slider_crank", "benchmarks/minimal.py", way="tables"),
+    "reverser": bench("reverser", *REVERSER, way="tables"),
+    "rods": bench("rods", *REVERSER, way="tables"),
+    "spatial": bench("spatial", *REVERSER, way="tables"),
     "fit_spatial": Made(
         "python -m benchmarks.fit_spatial",
         (*SOLVER, "benchmarks/fit_spatial.py", *REVERSER),
@@ -75,36 +74,33 @@ MADE: dict[str, Made] = {
     "against": Made(
         "python -m benchmarks.against FOLDER", (*SOLVER, "benchmarks/against.py"), asked=TIMES
     ),
-    "chain": bench("chain"),
-    "chains": bench("chains"),
+    "chain": bench("chain", way="tables"),
+    "chains": bench("chains", way="tables"),
     "contacts": bench("contacts", way="tables"),
-    "windows": bench("windows"),
-    "flexible_pendulum": bench("flexible_pendulum"),
-    "sweeps": bench("sweeps", "trsim/sweeps"),
+    "windows": bench("windows", way="tables"),
+    "flexible_pendulum": bench("flexible_pendulum", way="tables"),
+    "sweeps": bench("sweeps", "trsim/sweeps", way="tables"),
     "thousands": bench("thousands", "trsim/sweeps", way="tables"),
     "dask": bench("dask", "trsim/sweeps", way="tables"),
-    "startup": bench("startup", "trsim/kernels", "trsim/cli"),
-    "certify": tested("cli/test_certify"),
-    "user_events": tested("solve/test_user_events"),
-    "sections": tested("solve/test_sections", "analyse/test_section"),
-    "norm": tested("solve/test_norm"),
-    "works": tested("solve/test_works"),
-    "kinematic": tested("solve/test_kinematic_counts"),
-    "spatial_reverser": tested("solve/test_spatial_reverser", of=REVERSER),
-    "beams": tested("solve/test_beams_at_rest", "solve/test_beams_moving"),
+    "startup": bench("startup", "trsim/kernels", "trsim/cli", way="tables"),
+    "certify": bench("certify", "trsim/analyse", *REVERSER, way="tables"),
+    "user_events": scenes("user_events", "solve/test_user_events"),
+    "sections": bench("sections", "trsim/analyse/section.py", *REVERSER, way="tables", asked=""),
+    "norm": scenes("norm", "solve/test_norm"),
+    "works": scenes("works", "solve/test_works"),
+    "kinematic": scenes("kinematic", "solve/test_kinematic_counts"),
+    "symmetry": bench("symmetry", "tests/linkages.py", *REVERSER, way="tables", asked=""),
+    "beams": scenes("beams", "solve/test_beams_at_rest"),
     "lyapunov": Made(
-        "python -m pytest -s tests/analyse/test_lyapunov.py",
-        ("tests/analyse/test_lyapunov.py", "trsim/analyse/lyapunov.py",
+        "python -m benchmarks lyapunov",
+        ("benchmarks/lyapunov.py", "tests/analyse/series.py", "trsim/analyse/lyapunov.py",
          "trsim/analyse/embedding.py", "trsim/analyse/scaling.py", "trsim/analyse/growth.py"),
-        asked=HAND,
+        "tables",
     ),
+    "verdicts": bench("verdicts", *REVERSER, "trsim/studies", way="tables", asked=HOURS),
     "paper": Made("make paper", (*SOLVER, *REVERSER, "trsim/studies/thrust_reverser"), asked=HOURS),
-    "jam": Made(
-        "trsim sweep scenarios/thrust_reverser/spatial_jam.yaml -o runs/spatial_jam",
-        (*SOLVER, *REVERSER),
-        asked=HAND,
-    ),
-    "tolerances": Made("make tolerances", (*SOLVER, *REVERSER), asked=HOURS),
+    "jam": bench("jam", *REVERSER, way="tables", asked=""),
+    "tolerances": bench("tolerances", *REVERSER, way="tables", asked="it takes ten minutes"),
     "door": Made("make door", (*SOLVER, *DOOR, "trsim/studies/crew_door"), asked=HOURS),
     "release": Made(
         "make release-check", ("trsim/store", "trsim/sweeps", "trsim/cli", "tests/store",

@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from benchmarks import __main__ as measured
 from benchmarks.docs import __main__ as maker
 from benchmarks.docs import marks
 from benchmarks.docs.made import LISTS, MADE, Made
@@ -33,6 +34,15 @@ def test_markers_and_entries_know_each_other():
 def test_entries_name_sources_that_are_there():
     for name, entry in MADE.items():
         assert [one for one in entry.of if not (marks.ROOT / one).exists()] == [], name
+
+
+def test_commands_are_there():
+    """Of benchmarks: each can be typed; none is a test, whose output is no table."""
+    known = {*measured.NAMES, *measured.LONG}
+    for name, entry in MADE.items():
+        python, _, words = entry.command.partition(" -m benchmarks ")
+        assert python != "python" or set(words.split()) <= known, name
+        assert "pytest" not in entry.command, name
 
 
 @pytest.fixture
