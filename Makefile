@@ -46,7 +46,7 @@ docs-check: .venv/developer
 test: .venv/developer lint
 	$(PYTEST)
 
-# ten times the mutants, kills, faults and rows: hours
+# ten times the mutants, kills, faults and rows: hours; rerun it to resume
 release-check: .venv/developer lint
 	TRSIM_SIZE=release $(PYTEST)
 

@@ -15,6 +15,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import pytest
 from hypothesis import settings
 
+from tests.sizes import RELEASE
 from trsim.kernels.lazy import PYTHON
 
 # the first example of a law compiles it: a time says nothing about the law
@@ -29,6 +30,10 @@ def pytest_configure(config):
     begin in these tests, and without it half of the time of each goes into reading sources."""
     if not hasattr(config, "workerinput"):
         compileall.compile_dir(Path(__file__).parent.parent / "trsim", quiet=2)
+    if RELEASE:
+        from tests import resumed
+
+        resumed.begun(config)
 
 
 def pytest_collection_finish():
