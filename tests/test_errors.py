@@ -17,6 +17,7 @@ from trsim.errors import (
     edits,
     known,
     printable,
+    unreadable,
 )
 
 WORDS = [
@@ -122,3 +123,14 @@ def test_known():
     assert known("cranck", ["ground", "crank"]) == "Did you mean 'crank'?  Known: ground, crank."
     assert known("zzz", ["ground"]) == "Known: ground."
     assert known("x", list(string.ascii_letters)).endswith("... (38 more)")
+
+
+def test_a_file_beside_it_was_meant(tmp_path):
+    for name in ("four_bar.yaml", "four_bar.h5", "crane.yaml"):
+        (tmp_path / name).touch()
+    told = unreadable(tmp_path / "four-bar.yaml")
+    assert told.what.endswith("no such file")
+    assert told.hint == f"Did you mean {tmp_path / 'four_bar.yaml'}?"
+    assert unreadable(tmp_path / "door.yaml").hint == ""
+    assert unreadable(tmp_path / "none" / "four-bar.yaml").hint == ""
+    assert unreadable(tmp_path / "four_bar.yaml") is None

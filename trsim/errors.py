@@ -10,10 +10,12 @@ import re
 import stat
 from collections.abc import Callable, Iterable
 from functools import partial
+from itertools import islice
 from typing import Any, NamedTuple
 
 WIDTH = 90  # columns of an excerpt
 LISTED = 14  # words of a "Known:" list
+LOOKED = 500  # files of a folder: among these one is looked for that was meant
 # control characters but tab and end of line; ends of lines and directions of Unicode; half letters
 OBEYED = re.compile(
     "[\0-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
@@ -158,13 +160,27 @@ def unreadable(path: str | os.PathLike) -> FileError | None:
     try:
         mode = os.stat(path).st_mode
     except FileNotFoundError:
-        return FileError(f"{path}: no such file", file=str(path))
+        return FileError(f"{path}: no such file", meant(path), file=str(path))
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         return FileError(f"{path}: {reason}", file=str(path))
     if stat.S_ISREG(mode):
         return None
     return FileError(f"{path} is {what_it_is(mode)}, not a file", file=str(path))
+
+
+def meant(path: str | os.PathLike) -> str:
+    """The hint for a file that is not there: one beside it with nearly its name."""
+    folder, name = os.path.split(path)
+    stem, ending = os.path.splitext(name)
+    try:
+        with os.scandir(folder or ".") as there:
+            names = (os.path.splitext(one.name) for one in islice(there, LOOKED))
+            stems = [other for other, same in names if same == ending]
+    except (OSError, ValueError):
+        return ""
+    close = closest(stem, stems)
+    return f"Did you mean {os.path.join(folder, close + ending)}?" if close else ""
 
 
 def some(
