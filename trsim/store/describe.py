@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 
 from trsim.statuses import Status
-from trsim.store.grow import TEXT
+from trsim.store import made
 from trsim.store.peaks import Peak
 from trsim.store.read import FORMAT, VERSION, Part
 from trsim.version import __version__
@@ -65,42 +65,41 @@ class Impacts:
 
 def begin(file: h5py.File, scenario: Any, mechanism: Any) -> None:
     """Attributes and groups of a file whose run is about to start."""
-    file.attrs["format_version"] = VERSION
+    made.attribute(file.id, "format_version", VERSION)
     file.flush()  # who is killed from now on leaves a file that is known as ours, see target.py
-    file.attrs["format"] = FORMAT
-    file.attrs["title"] = scenario.title
-    file.attrs["status"], file.attrs["reason"] = "running", ""
-    for name in GROUPS:
-        file.create_group(name)
-    _scenario(file["scenario"], scenario)
-    _mechanism(file["mechanism"], scenario, mechanism)
+    told = {"format": FORMAT, "title": scenario.title, "status": "running", "reason": ""}
+    made.attributes(file.id, told)
+    groups = {name: made.group(file, name) for name in GROUPS}
+    _scenario(groups["scenario"], scenario)
+    _mechanism(groups["mechanism"], scenario, mechanism)
 
 
 def _scenario(group: h5py.Group, scenario: Any) -> None:
     """The text as given, its resolved form as JSON (which is YAML), and what it was read from."""
     source = scenario.source
     files = {PurePath(name).name: digest for name, digest in source.files.items()}
-    group["text"] = source.text
-    group["resolved"] = json.dumps(scenario.resolved, indent=1, ensure_ascii=False)
-    group["sha256"] = hashlib.sha256(source.text.encode()).hexdigest()
-    group["files"] = np.array(list(files), dtype=TEXT)
-    group["files_sha256"] = np.array(list(files.values()), dtype=TEXT)
+    resolved = json.dumps(scenario.resolved, indent=1, ensure_ascii=False)
+    made.values(group, "text", source.text, made.TEXT)
+    made.values(group, "resolved", resolved, made.TEXT)
+    made.values(group, "sha256", hashlib.sha256(source.text.encode()).hexdigest(), made.TEXT)
+    made.values(group, "files", list(files), made.TEXT)
+    made.values(group, "files_sha256", list(files.values()), made.TEXT)
 
 
 def _mechanism(group: h5py.Group, scenario: Any, mechanism: Any) -> None:
     """What was assembled: instances, and what the motion does not determine."""
-    group.attrs["planar"] = bool(mechanism.planar)
-    group.attrs["mobility"] = int(mechanism.mobility)
+    told = {"planar": bool(mechanism.planar), "mobility": int(mechanism.mobility)}
+    made.attributes(group.id, told)
     for name in ("redundant", "singular", "not_unique", "notes"):
-        group[name] = np.array(list(getattr(mechanism, name)), dtype=TEXT)
+        made.values(group, name, list(getattr(mechanism, name)), made.TEXT)
     found = parts(scenario, mechanism)
-    group["name"] = np.array(list(found), dtype=TEXT)
+    made.values(group, "name", list(found), made.TEXT)
     for name in ("section", "type", "joint"):
-        group[name] = np.array([getattr(part, name) for part in found.values()], dtype=TEXT)
+        made.values(group, name, [getattr(part, name) for part in found.values()], made.TEXT)
     bodies = [" ".join(part.bodies) for part in found.values()]
-    group["bodies"] = np.array(bodies, dtype=TEXT)
-    group["clearance"] = np.array([part.clearance for part in found.values()])
-    group["clearance"].attrs.update({"units": "m", "long_name": "radial clearance"})
+    made.values(group, "bodies", bodies, made.TEXT)
+    clearance = made.values(group, "clearance", [part.clearance for part in found.values()], "f8")
+    made.attributes(clearance, {"units": "m", "long_name": "radial clearance"})
 
 
 def parts(scenario: Any, mechanism: Any) -> dict[str, Part]:
@@ -124,7 +123,7 @@ def flag(file: h5py.File, mechanism: Any) -> None:
             channel = f"{name}.{own}"
             if channel in file:
                 rows = [row for row in mechanism.not_unique if row.split(".")[0] == name]
-                file[channel].attrs["not_unique"] = ", ".join(rows)
+                made.attribute(file[channel].id, "not_unique", ", ".join(rows))
 
 
 # --- after the last row ----------------------------------------------------------------------
@@ -177,10 +176,9 @@ def end(
     """Status, summary, solver, warnings and provenance."""
     summarised(file, told)
     solver = file["solver"]
-    solver["warnings"] = np.array(told["warnings"], dtype=TEXT)
-    for name, value in of_solver(scenario, told["statistics"]).items():
-        solver.attrs[name] = value
-    file["provenance"].attrs.update(provenance)
+    made.values(solver, "warnings", told["warnings"], made.TEXT)
+    made.attributes(solver.id, of_solver(scenario, told["statistics"]))
+    made.attributes(file["provenance"].id, provenance)
 
 
 def of_solver(scenario: Any, statistics: dict[str, Any]) -> dict[str, Any]:
@@ -191,11 +189,11 @@ def of_solver(scenario: Any, statistics: dict[str, Any]) -> dict[str, Any]:
 
 def summarised(file: h5py.File, told: dict[str, Any]) -> None:
     """Status and summary."""
-    file.attrs["status"], file.attrs["reason"] = told["status"], told["reason"]
-    for name in ("time", "rows", "events"):
-        file["summary"].attrs[name] = told[name]
+    made.attributes(file.id, {name: told[name] for name in ("status", "reason")})
+    summary = file["summary"]
+    made.attributes(summary.id, {name: told[name] for name in ("time", "rows", "events")})
     for joint, numbers in told["contacts"].items():
-        file["summary"].create_group(joint).attrs.update(numbers)
+        made.attributes(made.group(summary, joint).id, numbers)
 
 
 def provenance(command: str, clock: Clock, outcome: Any, resumed: Sequence[str]) -> dict[str, Any]:

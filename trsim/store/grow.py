@@ -1,16 +1,17 @@
 """Tables that grow while a run goes on: datasets of one length and one time scale."""
 
+from functools import cache
 from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-from h5py import h5a, h5d, h5p, h5s, h5t
+from h5py import h5d, h5s
 
 from trsim.arrays import Array
+from trsim.store import made
 
 LONGEST = 4096  # rows that wait in memory, and rows of a chunk
 ROOM = 4 << 20  # bytes of rows that wait in memory
-TEXT, SCALAR = h5py.string_dtype(), h5s.create(h5s.SCALAR)
 AXES = {3: "component.xyz", 9: "component.rotation"}  # scale of the second dimension, by size
 LABELS = {
     "component.xyz": ["x", "y", "z"],
@@ -36,17 +37,28 @@ class Growing:
         """width: columns of the rows; expected: how many rows there may be."""
         self.fields, self.name = fields, group.name
         self.chunk = chunk = min(LONGEST, max(64, 1 << (max(expected, 1) - 1).bit_length()))
-        self.datasets = [_dataset(group, field, chunk) for field in fields]
-        time = self.datasets[0]
-        time.make_scale(fields[0].name)
-        for field, dataset in zip(fields[1:], self.datasets[1:], strict=True):
-            dataset.dims[0].attach_scale(time)
-            if field.size > 1:
-                dataset.dims[1].attach_scale(group.file[AXES[field.size]])
+        self.items = [_dataset(group, field, chunk) for field in fields]
+        self._scaled(group)
         self.room = chunk * max(1, min(LONGEST // chunk, ROOM // (8 * width * chunk)))
         self.waiting = np.empty((self.room, width))
         self.n_waiting = 0
         self.n = 0  # rows in the file
+
+    @property
+    def datasets(self) -> list[h5py.Dataset]:
+        """The datasets as h5py knows them."""
+        return [h5py.Dataset(item) for item in self.items]
+
+    def _scaled(self, group: h5py.Group) -> None:
+        """Attach the time, and to the second dimension of what has one its components."""
+        sizes = {field.size for field in self.fields[1:]} - {1}
+        axes = {size: h5d.open(group.file.id, AXES[size].encode()) for size in sizes}
+        time = self.items[0]
+        made.scale(time, self.fields[0].name)
+        with_time = zip(self.fields[1:], self.items[1:], strict=True)
+        made.attach(
+            [(item, (time, *([axes[f.size]] if f.size > 1 else ()))) for f, item in with_time]
+        )
 
     def append(self, rows: Array) -> None:
         """Take rows; what does not fit in memory goes to the file."""
@@ -65,8 +77,8 @@ class Growing:
         if not self.n_waiting:
             return
         rows, n = self.waiting[: self.n_waiting], self.n + self.n_waiting
-        for field, dataset in zip(self.fields, self.datasets, strict=True):
-            extended(dataset, self.n, np.ascontiguousarray(_values(field, rows)))
+        for field, item in zip(self.fields, self.items, strict=True):
+            extended(item, self.n, np.ascontiguousarray(_values(field, rows)))
         self.n, self.n_waiting = n, 0
 
     def full(self, n: int) -> int:
@@ -91,35 +103,37 @@ def scales(file: h5py.File, sizes: set[int]) -> None:
     """The scales of components, for the sizes of channels that are there."""
     for size in sorted(sizes & set(AXES)):
         name = AXES[size]
-        file[name] = np.array(LABELS[name], dtype=h5py.string_dtype())
-        file[name].attrs["long_name"] = "component"
-        file[name].make_scale(name)
+        item = made.values(file, name, LABELS[name], made.TEXT)
+        made.attribute(item, "long_name", "component")
+        made.scale(item, name)
 
 
-def _dataset(group: h5py.Group, field: Field, chunk: int) -> h5py.Dataset:
-    """An empty dataset that grows.  A run may have hundreds, which h5py's own way makes slow."""
+def _dataset(group: h5py.Group, field: Field, chunk: int) -> h5d.DatasetID:
+    """An empty dataset that grows."""
     shape = () if field.size == 1 else (field.size,)
-    kind = np.dtype(f"S{max(map(len, field.words))}" if field.words else "f8")
-    plan = h5p.create(h5p.DATASET_CREATE)
-    plan.set_chunk((chunk, *shape))
-    plan.set_fletcher32()
-    if not field.words:
-        plan.set_fill_value(np.array(np.nan))  # a row that was never written says so
-    space = h5s.create_simple((0, *shape), (h5s.UNLIMITED, *shape))
-    made = h5d.create(group.id, field.name.encode(), h5t.py_create(kind, logical=True), space, plan)
-    for name, text in ((b"units", field.unit), (b"long_name", field.meaning)):
+    dtype = f"S{max(map(len, field.words))}" if field.words else "f8"
+    plan = made.growing((chunk, *shape), not field.words)
+    item = made.dataset(group, field.name, dtype, _empty(shape), plan)
+    for name, text in (("units", field.unit), ("long_name", field.meaning)):
         if text:
-            attribute = h5a.create(made, name, h5t.py_create(TEXT, logical=True), SCALAR)
-            attribute.write(np.array(text, TEXT))
-    return h5py.Dataset(made)
+            made.attribute(item, name, text)
+    return item
 
 
-def extended(dataset: h5py.Dataset, n: int, values: Any) -> None:
+@cache
+def _empty(shape: tuple[int, ...]) -> h5s.SpaceID:
+    """The space of a dataset without rows; shape: of one row."""
+    return h5s.create_simple((0, *shape), (h5s.UNLIMITED, *shape))
+
+
+def extended(item: h5d.DatasetID, n: int, values: Any) -> None:
     """Put rows behind the first n of a dataset."""
-    dataset.id.set_extent((n + len(values), *values.shape[1:]))
-    space = dataset.id.get_space()
-    space.select_hyperslab((n, *[0] * (values.ndim - 1)), values.shape)
-    dataset.id.write(h5s.create_simple(values.shape), space, values)
+    item.set_extent((n + len(values), *values.shape[1:]))
+    memory, place = h5s.ALL, h5s.ALL
+    if n:
+        memory, place = h5s.create_simple(values.shape), item.get_space()
+        place.select_hyperslab((n, *[0] * (values.ndim - 1)), values.shape)
+    item.write(memory, place, values, made.memory(values.dtype))
 
 
 def _values(field: Field, rows: Array) -> Any:

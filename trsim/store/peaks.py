@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.arrays import Array
-from trsim.store import rows
+from trsim.store import made, rows
 from trsim.store.grow import components
 
 ROWS = 1 << 16
@@ -109,11 +109,10 @@ def at_strokes(peaks: list[Peak], time: Any, stroke: Any) -> list[Peak]:
 def store(file: h5py.File, peaks: list[Peak]) -> None:
     """The group /peaks: one dataset per column of the table."""
     group = file["peaks"]
-    rows.store(group, Peak, peaks)
-    group["channel"].make_scale("channel")
-    for name in Peak._fields[1:]:
-        group[name].dims[0].attach_scale(group["channel"])
-    group["time"].attrs["units"] = "s"
+    items = rows.store(group, Peak, peaks)
+    made.scale(items["channel"], "channel")
+    made.attach([(items[name], (items["channel"],)) for name in Peak._fields[1:]])
+    made.attribute(items["time"], "units", "s")
     if "stroke" in file:
-        group["stroke"].attrs["units"] = file["stroke"].attrs["units"]
-    group.attrs["extremes"] = "of the motion, between steps too"
+        made.attribute(items["stroke"], "units", file["stroke"].attrs["units"])
+    made.attribute(group.id, "extremes", "of the motion, between steps too")

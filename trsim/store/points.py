@@ -14,11 +14,12 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
+from h5py import h5s
 
 from trsim.arrays import Array
 from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
-from trsim.store import torn
+from trsim.store import made, torn
 from trsim.store.grow import Field, Growing
 
 LOCATED = "located on the dense output of the step"
@@ -154,21 +155,24 @@ def _default(scenario: Any, mechanism: Any) -> list[Portrait]:
 
 def declare(file: h5py.File, planned: Plan) -> list[Growing]:
     """The groups with their definitions, portraits of scalar channels as links; the tables."""
-    phase, poincare = file.create_group("phase"), file.require_group("poincare")
-    file.create_group("impact")
-    file.create_group("orbit")
+    phase = made.group(file, "phase")
+    poincare = file["poincare"] if "poincare" in file else made.group(file, "poincare")
+    made.group(file, "impact")
+    made.group(file, "orbit")
+    time = file["time"].id
     for portrait in planned.portraits:
-        group = phase.create_group(portrait.name)
-        group.attrs.update({"x": portrait.x, "y": portrait.y})
+        group = made.group(phase, portrait.name)
+        made.attributes(group.id, {"x": portrait.x, "y": portrait.y})
         if portrait.x in file and portrait.y in file:
-            group["time"] = file["time"]
-            group["x"], group["y"] = file[portrait.x], file[portrait.y]
-    return [_table(poincare.create_group(section.name), section) for section in planned.sections]
+            made.link(group, "time", time)
+            made.link(group, "x", file[portrait.x].id)
+            made.link(group, "y", file[portrait.y].id)
+    return [_table(made.group(poincare, section.name), section) for section in planned.sections]
 
 
 def _table(group: h5py.Group, section: Any) -> Growing:
     """The growing table of a section."""
-    group.attrs.update(defined(section))
+    made.attributes(group.id, defined(section))
     fields = [
         Field("time", "s", "simulated time", TIME),
         Field("x", section.x_unit, section.x, X),
@@ -189,14 +193,14 @@ def complete(file: h5py.File, planned: Plan) -> None:
     for portrait in planned.portraits:
         group = file["phase"][portrait.name]
         if "x" not in group:
-            group["time"] = file["time"]
+            made.link(group, "time", file["time"].id)
             _store(file, group, "x", portrait.x)
             _store(file, group, "y", portrait.y)
     for group in file["poincare"].values():
         x, y = group["x"], group["y"]
         spread = dispersion(x[:], y[:], x.attrs["units"] == y.attrs["units"])
         told = {f"dispersion_{name}": value for name, value in spread._asdict().items()}
-        group.attrs.update({n: value for n, value in told.items() if value == value})
+        made.attributes(group.id, {n: value for n, value in told.items() if value == value})
     for name in file["steps"]:
         if all(channel in file["steps"][name] for channel in JOURNAL):
             _journal(file, name)
@@ -204,28 +208,25 @@ def complete(file: h5py.File, planned: Plan) -> None:
 
 def _journal(file: h5py.File, name: str) -> None:
     """Touches and orbit of a joint with clearance."""
-    events, group = file["events"], file["impact"].create_group(name)
+    events, group = file["events"], made.group(file["impact"], name)
     kind, element = events["kind"][:].astype(str), events["element"][:].astype(str)
     onset = np.flatnonzero((kind == "onset") & (element == name))
+    items = {}
     for axis in ("time", "angle", "speed"):
-        values = events[axis][:][onset]
-        group.create_dataset(
-            axis, data=values, chunks=(EXPECTED,), maxshape=(None,), fletcher32=True
-        )
-        for key in ("units", "long_name"):
-            group[axis].attrs[key] = events[axis].attrs[key]
-    group["time"].make_scale("time")
-    for axis in ("angle", "speed"):
-        group[axis].dims[0].attach_scale(group["time"])
-    orbit = file["orbit"].create_group(name)
+        source = events[axis]
+        told = {key: source.attrs[key] for key in ("units", "long_name")}
+        items[axis] = _kept(group, axis, source[:][onset], EXPECTED, told)
+    made.scale(items["time"], "time")
+    made.attach([(items[axis], (items["time"],)) for axis in ("angle", "speed")])
+    orbit, steps = made.group(file["orbit"], name), file["steps"][name]
     rows = [f"{name}.{channel}" for channel in JOURNAL]
-    sources = {"steps": [file["steps"][name][channel] for channel in ("time", *JOURNAL)]}
+    sources = {"steps": [steps[channel] for channel in ("time", *JOURNAL)]}
     if all(channel in file for channel in rows):
         sources["rows"] = [file["time"], *(file[channel] for channel in rows)]
     for part, datasets in sources.items():
-        inner = orbit.create_group(part)
+        inner = made.group(orbit, part)
         for axis, dataset in zip(("time", "x", "y"), datasets, strict=True):
-            inner[axis] = dataset
+            made.link(inner, axis, dataset.id)
 
 
 def _store(file: h5py.File, group: h5py.Group, axis: str, channel: str) -> None:
@@ -234,10 +235,18 @@ def _store(file: h5py.File, group: h5py.Group, axis: str, channel: str) -> None:
     name, component = split(channel, sizes)
     source, n = file[name], len(file["time"])
     data = source[:n] if component is None else source[:n, component]
-    dataset = group.create_dataset(axis, data=data, chunks=(4096,), maxshape=(None,),
-                                   fletcher32=True)  # fmt: skip
-    dataset.attrs["units"] = source.attrs["units"]
-    dataset.attrs["long_name"] = channel
+    told = {"units": source.attrs["units"], "long_name": channel}
+    _kept(group, axis, data, 4096, told)
+
+
+def _kept(group: h5py.Group, axis: str, data: Array, chunk: int, told: dict[str, Any]) -> Any:
+    """A dataset with numbers that are known; what was made."""
+    space = h5s.create_simple(data.shape, (h5s.UNLIMITED,))
+    item = made.dataset(group, axis, "f8", space, made.chunked((chunk,)))
+    if len(data):
+        item.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(data), made.memory(data.dtype))
+    made.attributes(item, told)
+    return item
 
 
 # --- out of it --------------------------------------------------------------------------------

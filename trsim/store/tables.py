@@ -5,6 +5,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from trsim.store import made
 from trsim.store.grow import Field, Growing
 
 EVENT_COLUMNS = 7  # of a line of events, see solve/march/record.py
@@ -28,7 +29,7 @@ def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
     """The table of one contact: its channels at every accepted step in touch."""
     fields = step_fields(instance)
     width = 2 + sum(field.size for field in fields)
-    group = file["steps"].create_group(instance.name)
+    group = made.group(file["steps"], instance.name)
     return Growing(group, [time_field, *fields], width, EXPECTED)
 
 
@@ -71,11 +72,12 @@ class Touches:
 
 def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
     """The table of onsets and separations, of changes of method, and of user events."""
+    group = file["events"]
     if user := mechanism.stages.switches.events:
         asked = [event.name for event in user if event.role not in ("stall", "taut")]
-        file["events"].attrs["user"] = asked
+        made.attribute(group.id, "user", asked)
     fields = [time_field, *event_fields(mechanism)]
-    return Growing(file["events"], fields, EVENT_COLUMNS, EXPECTED)
+    return Growing(group, fields, EVENT_COLUMNS, EXPECTED)
 
 
 def event_fields(mechanism: Any) -> list[Field]:
@@ -138,7 +140,7 @@ def recorded(file: h5py.File, mechanism: Any, rows: list[Field]) -> Growing | No
     fields = [rows[0], Field("event", "", "which", 1, words=tuple(e.name for e in events))]
     fields += [field._replace(start=field.start + 1) for field in rows[1:]]
     width = 2 + max((c.start + c.size for c in mechanism.columns), default=0)
-    return Growing(file.create_group("recorded"), fields, width, EXPECTED)
+    return Growing(made.group(file, "recorded"), fields, width, EXPECTED)
 
 
 def jumps(file: h5py.File, mechanism: Any, time_field: Field) -> tuple[Growing, Growing] | None:
@@ -175,6 +177,6 @@ def jumps(file: h5py.File, mechanism: Any, time_field: Field) -> tuple[Growing, 
         Field("angular_velocity_after", "rad/s", "the same just after", 12, 3),
     ]
     return (
-        Growing(file.create_group("impulses"), impulses, 11, EXPECTED),
-        Growing(file.create_group("velocity_jumps"), velocities, 15, EXPECTED),
+        Growing(made.group(file, "impulses"), impulses, 11, EXPECTED),
+        Growing(made.group(file, "velocity_jumps"), velocities, 15, EXPECTED),
     )
