@@ -11,6 +11,7 @@ import numpy as np
 
 from trsim.store import rows, torn
 from trsim.store.content import content_hash
+from trsim.store.made import Book
 from trsim.store.points import plain
 
 GROUP = "certificate"
@@ -151,11 +152,11 @@ TABLES: dict[str, Any] = {
 
 def store(file: h5py.File, certificate: Certificate) -> None:
     """Add the group to a file whose run is complete."""
-    group = file.create_group(GROUP)
-    group.attrs.update(certificate.about)
+    book = Book(file)
+    book.attributes(book.group(GROUP), certificate.about)
     for name, row in TABLES.items():
-        rows.store(group.create_group(name), row, getattr(certificate, name))
-    group.attrs["content_sha256"] = content_hash(group)
+        rows.store(book, book.group(f"{GROUP}/{name}"), row, getattr(certificate, name))
+    book.attribute(GROUP, "content_sha256", content_hash(file[GROUP]))
 
 
 def of(file: h5py.File) -> Certificate | None:

@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 
 from trsim.statuses import Status
-from trsim.store import made
+from trsim.store.made import Book
 from trsim.store.peaks import Peak
 from trsim.store.read import FORMAT, VERSION, Part
 from trsim.version import __version__
@@ -63,43 +63,44 @@ class Impacts:
 # --- before the first row --------------------------------------------------------------------
 
 
-def begin(file: h5py.File, scenario: Any, mechanism: Any) -> None:
+def begin(book: Book, scenario: Any, mechanism: Any) -> None:
     """Attributes and groups of a file whose run is about to start."""
-    made.attribute(file.id, "format_version", VERSION)
-    file.flush()  # who is killed from now on leaves a file that is known as ours, see target.py
+    book.attribute("", "format_version", VERSION)
+    book.file.flush()  # who is killed from now on leaves a file that is known as ours: target.py
     told = {"format": FORMAT, "title": scenario.title, "status": "running", "reason": ""}
-    made.attributes(file.id, told)
-    groups = {name: made.group(file, name) for name in GROUPS}
-    _scenario(groups["scenario"], scenario)
-    _mechanism(groups["mechanism"], scenario, mechanism)
+    book.attributes("", told)
+    for name in GROUPS:
+        book.group(name)
+    _scenario(book, scenario)
+    _mechanism(book, scenario, mechanism)
 
 
-def _scenario(group: h5py.Group, scenario: Any) -> None:
+def _scenario(book: Book, scenario: Any) -> None:
     """The text as given, its resolved form as JSON (which is YAML), and what it was read from."""
     source = scenario.source
     files = {PurePath(name).name: digest for name, digest in source.files.items()}
     resolved = json.dumps(scenario.resolved, indent=1, ensure_ascii=False)
-    made.values(group, "text", source.text, made.TEXT)
-    made.values(group, "resolved", resolved, made.TEXT)
-    made.values(group, "sha256", hashlib.sha256(source.text.encode()).hexdigest(), made.TEXT)
-    made.values(group, "files", list(files), made.TEXT)
-    made.values(group, "files_sha256", list(files.values()), made.TEXT)
+    book.values("scenario/text", source.text)
+    book.values("scenario/resolved", resolved)
+    book.values("scenario/sha256", hashlib.sha256(source.text.encode()).hexdigest())
+    book.values("scenario/files", list(files))
+    book.values("scenario/files_sha256", list(files.values()))
 
 
-def _mechanism(group: h5py.Group, scenario: Any, mechanism: Any) -> None:
+def _mechanism(book: Book, scenario: Any, mechanism: Any) -> None:
     """What was assembled: instances, and what the motion does not determine."""
     told = {"planar": bool(mechanism.planar), "mobility": int(mechanism.mobility)}
-    made.attributes(group.id, told)
+    book.attributes("mechanism", told)
     for name in ("redundant", "singular", "not_unique", "notes"):
-        made.values(group, name, list(getattr(mechanism, name)), made.TEXT)
+        book.values(f"mechanism/{name}", list(getattr(mechanism, name)))
     found = parts(scenario, mechanism)
-    made.values(group, "name", list(found), made.TEXT)
+    book.values("mechanism/name", list(found))
     for name in ("section", "type", "joint"):
-        made.values(group, name, [getattr(part, name) for part in found.values()], made.TEXT)
-    bodies = [" ".join(part.bodies) for part in found.values()]
-    made.values(group, "bodies", bodies, made.TEXT)
-    clearance = made.values(group, "clearance", [part.clearance for part in found.values()], "f8")
-    made.attributes(clearance, {"units": "m", "long_name": "radial clearance"})
+        book.values(f"mechanism/{name}", [getattr(part, name) for part in found.values()])
+    book.values("mechanism/bodies", [" ".join(part.bodies) for part in found.values()])
+    clearances = [part.clearance for part in found.values()]
+    path = book.values("mechanism/clearance", clearances, "f8")
+    book.attributes(path, {"units": "m", "long_name": "radial clearance"})
 
 
 def parts(scenario: Any, mechanism: Any) -> dict[str, Part]:
@@ -115,15 +116,15 @@ def parts(scenario: Any, mechanism: Any) -> dict[str, Part]:
     return found
 
 
-def flag(file: h5py.File, mechanism: Any) -> None:
+def flag(book: Book, mechanism: Any) -> None:
     """Mark the reactions that the motion does not determine; of a relation all that it tells."""
     relations = {i.name: [c.name for c in i.channels] for i in mechanism.instances if i.row.relates}
     for name in {row.split(".")[0] for row in mechanism.not_unique}:
         for own in relations.get(name, ("reaction", "reaction_moment")):
             channel = f"{name}.{own}"
-            if channel in file:
+            if channel in book.told:
                 rows = [row for row in mechanism.not_unique if row.split(".")[0] == name]
-                made.attribute(file[channel].id, "not_unique", ", ".join(rows))
+                book.attribute(channel, "not_unique", ", ".join(rows))
 
 
 # --- after the last row ----------------------------------------------------------------------
@@ -170,15 +171,12 @@ def summary(
     }
 
 
-def end(
-    file: h5py.File, told: dict[str, Any], scenario: Any, outcome: Any, provenance: dict
-) -> None:
+def end(book: Book, told: dict[str, Any], scenario: Any, outcome: Any, provenance: dict) -> None:
     """Status, summary, solver, warnings and provenance."""
-    summarised(file, told)
-    solver = file["solver"]
-    made.values(solver, "warnings", told["warnings"], made.TEXT)
-    made.attributes(solver.id, of_solver(scenario, told["statistics"]))
-    made.attributes(file["provenance"].id, provenance)
+    summarised(book, told)
+    book.values("solver/warnings", told["warnings"])
+    book.attributes("solver", of_solver(scenario, told["statistics"]))
+    book.attributes("provenance", provenance)
 
 
 def of_solver(scenario: Any, statistics: dict[str, Any]) -> dict[str, Any]:
@@ -187,13 +185,12 @@ def of_solver(scenario: Any, statistics: dict[str, Any]) -> dict[str, Any]:
     return plain | {name: value for name, value in statistics.items() if name != CPU}
 
 
-def summarised(file: h5py.File, told: dict[str, Any]) -> None:
+def summarised(book: Book, told: dict[str, Any]) -> None:
     """Status and summary."""
-    made.attributes(file.id, {name: told[name] for name in ("status", "reason")})
-    summary = file["summary"]
-    made.attributes(summary.id, {name: told[name] for name in ("time", "rows", "events")})
+    book.attributes("", {name: told[name] for name in ("status", "reason")})
+    book.attributes("summary", {name: told[name] for name in ("time", "rows", "events")})
     for joint, numbers in told["contacts"].items():
-        made.attributes(made.group(summary, joint).id, numbers)
+        book.attributes(book.group(f"summary/{joint}"), numbers)
 
 
 def provenance(command: str, clock: Clock, outcome: Any, resumed: Sequence[str]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from h5py import h5d, h5s
 
 from trsim.arrays import Array
 from trsim.store import made
+from trsim.store.made import Book
 
 LONGEST = 4096  # rows that wait in memory, and rows of a chunk
 ROOM = 4 << 20  # bytes of rows that wait in memory
@@ -33,12 +34,15 @@ class Field(NamedTuple):
 class Growing:
     """Datasets that grow together.  Field 0 is the time scale of the others."""
 
-    def __init__(self, group: h5py.Group, fields: list[Field], width: int, expected: int) -> None:
-        """width: columns of the rows; expected: how many rows there may be."""
-        self.fields, self.name = fields, group.name
+    def __init__(self, book: Book, path: str, fields: list[Field], rows: tuple[int, int]) -> None:
+        """In a group; rows: columns of the rows that come, and how many there may be."""
+        self.fields, self.name, (width, expected) = fields, f"/{path}", rows
         self.chunk = chunk = min(LONGEST, max(64, 1 << (max(expected, 1) - 1).bit_length()))
-        self.items = [_dataset(group, field, chunk) for field in fields]
-        self._scaled(group)
+        paths = [f"{path}/{field.name}" if path else field.name for field in fields]
+        self.items = [_dataset(book, *of, chunk) for of in zip(paths, fields, strict=True)]
+        book.scale(paths[0], fields[0].name)
+        axes = [(paths[0], AXES[f.size]) if f.size > 1 else (paths[0],) for f in fields]
+        book.attach(list(zip(paths, axes, strict=True))[1:])
         self.room = chunk * max(1, min(LONGEST // chunk, ROOM // (8 * width * chunk)))
         self.waiting = np.empty((self.room, width))
         self.n_waiting = 0
@@ -48,17 +52,6 @@ class Growing:
     def datasets(self) -> list[h5py.Dataset]:
         """The datasets as h5py knows them."""
         return [h5py.Dataset(item) for item in self.items]
-
-    def _scaled(self, group: h5py.Group) -> None:
-        """Attach the time, and to the second dimension of what has one its components."""
-        sizes = {field.size for field in self.fields[1:]} - {1}
-        axes = {size: h5d.open(group.file.id, AXES[size].encode()) for size in sizes}
-        time = self.items[0]
-        made.scale(time, self.fields[0].name)
-        with_time = zip(self.fields[1:], self.items[1:], strict=True)
-        made.attach(
-            [(item, (time, *([axes[f.size]] if f.size > 1 else ()))) for f, item in with_time]
-        )
 
     def append(self, rows: Array) -> None:
         """Take rows; what does not fit in memory goes to the file."""
@@ -99,24 +92,22 @@ def components(channel: str, size: int) -> list[str]:
     return [f"{channel}.{label}" for label in LABELS.get(AXES.get(size, ""), range(size))]
 
 
-def scales(file: h5py.File, sizes: set[int]) -> None:
+def scales(book: Book, sizes: set[int]) -> None:
     """The scales of components, for the sizes of channels that are there."""
     for size in sorted(sizes & set(AXES)):
-        name = AXES[size]
-        item = made.values(file, name, LABELS[name], made.TEXT)
-        made.attribute(item, "long_name", "component")
-        made.scale(item, name)
+        path = book.values(AXES[size], LABELS[AXES[size]])
+        book.attribute(path, "long_name", "component")
+        book.scale(path, path)
 
 
-def _dataset(group: h5py.Group, field: Field, chunk: int) -> h5d.DatasetID:
+def _dataset(book: Book, path: str, field: Field, chunk: int) -> h5d.DatasetID:
     """An empty dataset that grows."""
     shape = () if field.size == 1 else (field.size,)
     dtype = f"S{max(map(len, field.words))}" if field.words else "f8"
     plan = made.growing((chunk, *shape), not field.words)
-    item = made.dataset(group, field.name, dtype, _empty(shape), plan)
-    for name, text in (("units", field.unit), ("long_name", field.meaning)):
-        if text:
-            made.attribute(item, name, text)
+    item: h5d.DatasetID = book.dataset(path, dtype, _empty(shape), plan)
+    told = {"units": field.unit, "long_name": field.meaning}
+    book.attributes(path, {name: text for name, text in told.items() if text})
     return item
 
 

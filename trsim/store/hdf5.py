@@ -20,10 +20,11 @@ from trsim.statuses import Status
 from trsim.store import checkpoint as checkpoints
 from trsim.store import describe, own, peaks, points, tables
 from trsim.store.checkpoint import Checkpoint
-from trsim.store.content import content_hash
+from trsim.store.content import told_hash
 from trsim.store.disk import check_room, let_go, synced
 from trsim.store.grow import Field, Growing, scales
 from trsim.store.lock import alone
+from trsim.store.made import Book
 from trsim.store.read import Run, read
 from trsim.store.resume import refill
 from trsim.store.target import CHECKPOINT, PART, replaceable
@@ -171,7 +172,7 @@ class Running:
         os.close(own.made(path, PART))  # HDF5 would follow a link
         file = h5py.File(path, "w", libver=LIBVER, rdcc_nbytes=CACHE)
         try:
-            self.declare(file)
+            self.declare(Book(file))
             if kept is not None:
                 refill(self.part, self.tables, kept)
             file.swmr_mode = True
@@ -198,28 +199,29 @@ class Running:
             array[:] = kept.extremes[name]
         self.resumed = [*kept.resumed, f"t = {kept.time:g} s on {describe.stamp(time.time())}"]
 
-    def declare(self, file: h5py.File) -> None:
+    def declare(self, book: Book) -> None:
         """Groups, names and attributes."""
+        self.book = book
         columns = [c for c in self.mechanism.columns if c.wanted or c.name in self.planned.columns]
-        describe.begin(file, self.scenario, self.mechanism)
+        describe.begin(book, self.scenario, self.mechanism)
         turned = any(event.turned for event in self.mechanism.stages.switches.events)
-        scales(file, {c.size for c in self.mechanism.columns} | ({3} if turned else set()))
+        scales(book, {c.size for c in self.mechanism.columns} | ({3} if turned else set()))
         time_field = Field("time", "s", "simulated time", 0)
         fields = [Field(c.name, c.unit, c.meaning, 1 + c.start, c.size) for c in columns]
         width = 1 + max((c.start + c.size for c in self.mechanism.columns), default=0)
         solver, output = self.scenario.solver, self.scenario.output
         expected = int(min((solver.end or 0.0) / output.every if output.every else 1000, 1e9)) + 1
-        self.rows = Growing(file, [time_field, *fields], width, expected)
-        describe.flag(file, self.mechanism)
+        self.rows = Growing(book, "", [time_field, *fields], (width, expected))
+        describe.flag(book, self.mechanism)
         self.contacts = {
-            e: tables.steps(file, instance, time_field)
+            e: tables.steps(book, instance, time_field)
             for e, instance in tables.touching(self.mechanism).items()
         }
-        self.events = tables.events(file, self.mechanism, time_field)
-        self.recorded = tables.recorded(file, self.mechanism, [time_field, *fields])
-        self.jumps = tables.jumps(file, self.mechanism, time_field)
+        self.events = tables.events(book, self.mechanism, time_field)
+        self.recorded = tables.recorded(book, self.mechanism, [time_field, *fields])
+        self.jumps = tables.jumps(book, self.mechanism, time_field)
         self.tables = [self.rows, self.events, *self.contacts.values(), *(self.jumps or ())]
-        self.sections = points.declare(file, self.planned)
+        self.sections = points.declare(book, self.planned)
         self.tables += [*filter(None, [self.recorded]), *self.sections]
 
     def take(self, block: Any) -> None:
@@ -281,20 +283,21 @@ class Running:
             self.flush()
             self.file.close()
             with h5py.File(self.part, "r+", libver=LIBVER) as file:
-                self.file = file
+                self.file, book = file, self.book
+                book.go_on(file)
                 complete = status != INTERRUPTED  # otherwise there are only two seconds
                 extremes = None if outcome is None else outcome.peaks
                 found = peaks.table(self.mechanism, extremes, self.magnitudes)
                 if complete:
-                    points.complete(file, self.planned)
+                    points.complete(book, self.planned)
                     found = peaks.with_strokes(found, file)
-                peaks.store(file, found)
+                peaks.store(book, found)
                 title = str(file.attrs["title"])
                 summary = describe.summary(self, title, status, reason, outcome, found)
-                describe.end(file, summary, self.scenario, outcome, provenance)
+                describe.end(book, summary, self.scenario, outcome, provenance)
                 if complete:
-                    summary["content_sha256"] = content_hash(file)
-                    file.attrs["content_sha256"] = summary["content_sha256"]
+                    summary["content_sha256"] = told_hash(book)
+                    book.attribute("", "content_sha256", summary["content_sha256"])
                 if complete and self.around.closing is not None:
                     summary |= self.around.closing(file)
             synced(self.part)

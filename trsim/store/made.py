@@ -2,10 +2,11 @@
 
 h5py's own objects cost more than all that HDF5 does: a file of a short run has a hundred datasets
 and two hundred attributes.  Types, spaces and lists of properties are made once in a process.  What
-is made is the same as h5py makes.
+is made is the same as h5py makes.  What was told is remembered: reading it again for the content
+hash would cost as much as writing it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any
 
@@ -13,16 +14,13 @@ import h5py
 import numpy as np
 from h5py import h5a, h5d, h5ds, h5g, h5o, h5p, h5r, h5s, h5t
 
-from trsim.arrays import Array
-
 TEXT = h5py.string_dtype()
+NUMBERS = h5t.py_create(np.dtype("f8"))
+TEXTS, OBJECTS = h5t.py_create(TEXT, logical=True), h5t.py_create(TEXT)  # in files, in memory
 SCALAR = h5s.create(h5s.SCALAR)
 REFERENCES = h5py.vlen_dtype(h5py.ref_dtype)
 USE = np.dtype([("dataset", h5py.ref_dtype), ("dimension", "u4")])  # of a scale
-Attached = tuple[h5d.DatasetID, tuple[h5d.DatasetID | None, ...]]  # the scales of its dimensions
-
-
-TEXTS, OBJECTS = h5t.py_create(TEXT, logical=True), h5t.py_create(TEXT)  # in files, in memory
+Scaled = tuple[str, tuple[str, ...]]  # a dataset, and the scales of its dimensions; "" for none
 
 
 def kind(dtype: np.dtype) -> h5t.TypeID:
@@ -41,9 +39,22 @@ def _kind(dtype: np.dtype) -> h5t.TypeID:
     return h5t.py_create(dtype, logical=True)
 
 
+def coded(value: Any) -> Any:
+    """The bytes of a value, the same for every way of storing text."""
+    if isinstance(value, str | bytes):
+        return value.encode() if isinstance(value, str) else value
+    array = np.ascontiguousarray(value)
+    if array.dtype.kind in "OSU":
+        return b"\0".join(coded(part) for part in array.ravel().tolist())
+    return array.data if array.size else b""
+
+
 def spaced(shape: tuple[int, ...]) -> h5s.SpaceID:
     """The space of an array that keeps its shape."""
     return h5s.create_simple(shape) if shape else SCALAR
+
+
+# --- properties ------------------------------------------------------------------------------
 
 
 @cache
@@ -85,58 +96,118 @@ def _utf8() -> h5p.PropLCID:
     return made
 
 
-def _link(name: str) -> h5p.PropLCID | None:
-    return None if name.isascii() else _utf8()
+def _link(path: str) -> h5p.PropLCID | None:
+    return None if path.isascii() else _utf8()
 
 
 # --- objects ---------------------------------------------------------------------------------
 
 
-def group(holder: h5py.Group, name: str) -> h5py.Group:
-    """A new group."""
-    return h5py.Group(h5g.create(holder.id, name.encode(), _link(name)))
+class Told:
+    """What was told of one object."""
+
+    def __init__(self, words: tuple[str, str] | None = None, data: Any = None) -> None:
+        self.words = words  # dtype and shape of a dataset; None of a group
+        self.data = data  # bytes; None where they are in the file alone
+        self.attributes: dict[str, Any] = {}  # name -> bytes
 
 
-def dataset(
-    holder: h5py.Group, name: str, dtype: Any, space: h5s.SpaceID, plan: h5p.PropDCID
-) -> h5d.DatasetID:  # fmt: skip
-    """A new dataset without values."""
-    made = kind(np.dtype(dtype))
-    return h5d.create(holder.id, name.encode(), made, space, plan, _link(name))
+class Book:
+    """Makes the objects of a file, by their paths, and remembers what was told of them."""
 
+    def __init__(self, file: h5py.File) -> None:
+        self.told = {"": Told()}  # by path
+        self.links = dict[str, str]()  # other names of datasets, and their first ones
+        self.go_on(file)
 
-def values(holder: h5py.Group, name: str, given: Any, dtype: Any = None) -> h5d.DatasetID:
-    """A new dataset that keeps its shape."""
-    array = np.asarray(given, dtype)
-    made = dataset(holder, name, array.dtype, spaced(array.shape), plain())
-    if array.size:
-        made.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(array), memory(array.dtype))
-    return made
+    def go_on(self, file: h5py.File) -> None:
+        """Go on in the file, which was opened again."""
+        self.file, self._items = file, dict[str, Any]({"": file.id})
 
+    def item(self, path: str) -> Any:
+        """The identifier of an object."""
+        if path not in self._items:
+            self._items[path] = h5o.open(self.file.id, path.encode())
+        return self._items[path]
 
-def link(holder: h5py.Group, name: str, item: h5d.DatasetID) -> None:
-    """Another name for a dataset."""
-    h5o.link(item, holder.id, name.encode(), _link(name))
+    def opened(self, path: str) -> Any:
+        """The identifier of a dataset for one use: of those that grow there may be many."""
+        return self._items.get(path) or h5d.open(self.file.id, path.encode())
 
+    def group(self, path: str) -> str:
+        """A new group; its path."""
+        self._items[path] = h5g.create(self.file.id, path.encode(), _link(path))
+        self.told[path] = Told()
+        return path
 
-# --- attributes ------------------------------------------------------------------------------
+    def dataset(self, path: str, dtype: Any, space: h5s.SpaceID, plan: h5p.PropDCID) -> Any:
+        """A new dataset without values, which are put into the file by whoever has them."""
+        made = kind(np.dtype(dtype))
+        item = h5d.create(self.file.id, path.encode(), made, space, plan, _link(path))
+        self._items[path], self.told[path] = item, Told(("", ""))
+        return item
 
+    def values(self, path: str, given: Any, dtype: Any = TEXT) -> str:
+        """A new dataset that keeps its shape; its path."""
+        array = np.asarray(given, dtype)
+        item = self.dataset(path, array.dtype, spaced(array.shape), plain())
+        if array.size:
+            item.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(array), memory(array.dtype))
+        word = "text" if array.dtype.kind == "O" else array.dtype.str
+        data = coded(given if isinstance(given, str) else array)
+        self.told[path] = Told((word, str(array.shape)), data)
+        return path
 
-def attribute(item: Any, name: str, value: Any) -> None:
-    """Tell something of a group or dataset, by its identifier; in place of what was told."""
-    array = np.asarray(value, TEXT if isinstance(value, str) else None)
-    array = array.astype(TEXT) if array.dtype.kind == "U" else array
-    coded = name.encode()
-    if h5a.exists(item, coded):
-        h5a.delete(item, coded)
-    made = h5a.create(item, coded, kind(array.dtype), spaced(array.shape))
-    made.write(array, memory(array.dtype))
+    def link(self, path: str, of: str) -> None:
+        """Another name for a dataset."""
+        h5o.link(self.item(of), self.file.id, path.encode(), _link(path))
+        self.links[path] = of
 
+    def attribute(self, path: str, name: str, value: Any) -> None:
+        """Tell something of an object; in place of what was told."""
+        item, key = self.item(path), name.encode()
+        array = np.asarray(value, TEXT if isinstance(value, str) else None)
+        array = array.astype(TEXT) if array.dtype.kind == "U" else array
+        if h5a.exists(item, key):
+            h5a.delete(item, key)
+        made = h5a.create(item, key, kind(array.dtype), spaced(array.shape))
+        made.write(array, memory(array.dtype))
+        if path in self.told:
+            self.told[path].attributes[name] = coded(value if isinstance(value, str) else array)
 
-def attributes(item: Any, told: Mapping[str, Any]) -> None:
-    """The same of several things."""
-    for name, value in told.items():
-        attribute(item, name, value)
+    def attributes(self, path: str, told: Mapping[str, Any]) -> None:
+        """The same of several things."""
+        for name, value in told.items():
+            self.attribute(path, name, value)
+
+    def scale(self, path: str, name: str) -> None:
+        """Have a dataset be a scale."""
+        h5ds.set_scale(self.item(path), name.encode())
+
+    def attach(self, found: Iterable[Scaled]) -> None:
+        """Attach scales to the dimensions of datasets that have none.
+
+        HDF5 would list anew with each dataset what the scale is attached to: as many writes as
+        their square.  Here every scale is told once.
+        """
+        uses: dict[str, list[tuple[Any, int]]] = {}
+        of: dict[str, Any] = {"": np.array([], h5py.ref_dtype)}
+        for path, scales in found:
+            item, lists = self.item(path), np.empty(len(scales), REFERENCES)
+            mine = _reference(item)
+            for k, scale in enumerate(scales):
+                if scale not in of:
+                    of[scale] = np.array([_reference(self.item(scale))], h5py.ref_dtype)
+                    uses[scale] = _uses(self.item(scale))
+                if scale:
+                    uses[scale].append((mine, k))
+                lists[k] = of[scale]
+            made = h5a.create(item, b"DIMENSION_LIST", _of_scales(), spaced(lists.shape))
+            made.write(lists)
+        for scale, pairs in uses.items():
+            listed = np.array(pairs, USE)
+            made = h5a.create(self.item(scale), b"REFERENCE_LIST", _of_uses(), spaced(listed.shape))
+            made.write(listed)
 
 
 # --- dimension scales ------------------------------------------------------------------------
@@ -149,7 +220,7 @@ def _of_scales() -> h5t.TypeVlenID:
 
 
 @cache
-def _uses() -> h5t.TypeCompoundID:
+def _of_uses() -> h5t.TypeCompoundID:
     """The type in which HDF5 lists what a scale is attached to."""
     made = h5t.create(h5t.COMPOUND, 16)
     made.insert(b"dataset", 0, h5t.STD_REF_OBJ)
@@ -157,35 +228,11 @@ def _uses() -> h5t.TypeCompoundID:
     return made
 
 
-def attach(found: Sequence[Attached]) -> None:
-    """Attach scales to the dimensions of datasets that have none.
-
-    HDF5 would list anew with each dataset what the scale is attached to: as many writes as their
-    square.  Here every scale is told once.
-    """
-    uses: dict[int, list[tuple[Any, int]]] = {}  # by the numbers HDF5 gives to what is open
-    for item, scales in found:
-        lists, mine = np.empty(len(scales), REFERENCES), _reference(item)
-        for k, scale in enumerate(scales):
-            lists[k] = np.array([_reference(scale)] if scale else [], h5py.ref_dtype)
-            if scale:
-                uses.setdefault(scale.id, _attached(scale)).append((mine, k))
-        h5a.create(item, b"DIMENSION_LIST", _of_scales(), spaced((len(lists),))).write(lists)
-    for scale in {scale.id: scale for _, scales in found for scale in scales if scale}.values():
-        listed = np.array(uses[scale.id], USE)
-        h5a.create(scale, b"REFERENCE_LIST", _uses(), spaced(listed.shape)).write(listed)
-
-
-def scale(item: h5d.DatasetID, name: str) -> None:
-    """Have a dataset be a scale."""
-    h5ds.set_scale(item, name.encode())
-
-
 def _reference(item: h5d.DatasetID) -> Any:
     return h5r.create(item, b".", h5r.OBJECT)
 
 
-def _attached(scale: h5d.DatasetID) -> list[tuple[Any, int]]:
+def _uses(scale: h5d.DatasetID) -> list[tuple[Any, int]]:
     """What a scale is attached to so far; its list is taken away."""
     if not h5a.exists(scale, b"REFERENCE_LIST"):
         return []

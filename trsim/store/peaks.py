@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.arrays import Array
-from trsim.store import made, rows
+from trsim.store import rows
 from trsim.store.grow import components
+from trsim.store.made import Book
 
 ROWS = 1 << 16
 
@@ -106,13 +107,12 @@ def at_strokes(peaks: list[Peak], time: Any, stroke: Any) -> list[Peak]:
     return [peak._replace(stroke=float(s)) for peak, s in zip(peaks, strokes, strict=True)]
 
 
-def store(file: h5py.File, peaks: list[Peak]) -> None:
+def store(book: Book, peaks: list[Peak]) -> None:
     """The group /peaks: one dataset per column of the table."""
-    group = file["peaks"]
-    items = rows.store(group, Peak, peaks)
-    made.scale(items["channel"], "channel")
-    made.attach([(items[name], (items["channel"],)) for name in Peak._fields[1:]])
-    made.attribute(items["time"], "units", "s")
-    if "stroke" in file:
-        made.attribute(items["stroke"], "units", file["stroke"].attrs["units"])
-    made.attribute(group.id, "extremes", "of the motion, between steps too")
+    rows.store(book, "peaks", Peak, peaks)
+    book.scale("peaks/channel", "channel")
+    book.attach([(f"peaks/{name}", ("peaks/channel",)) for name in Peak._fields[1:]])
+    book.attribute("peaks/time", "units", "s")
+    if "stroke" in book.file:
+        book.attribute("peaks/stroke", "units", book.file["stroke"].attrs["units"])
+    book.attribute("peaks", "extremes", "of the motion, between steps too")

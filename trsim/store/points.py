@@ -21,6 +21,7 @@ from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.store import made, torn
 from trsim.store.grow import Field, Growing
+from trsim.store.made import Book
 
 LOCATED = "located on the dense output of the step"
 EXPECTED = 256  # points
@@ -153,32 +154,31 @@ def _default(scenario: Any, mechanism: Any) -> list[Portrait]:
 # --- in the file -----------------------------------------------------------------------------
 
 
-def declare(file: h5py.File, planned: Plan) -> list[Growing]:
+def declare(book: Book, planned: Plan) -> list[Growing]:
     """The groups with their definitions, portraits of scalar channels as links; the tables."""
-    phase = made.group(file, "phase")
-    poincare = file["poincare"] if "poincare" in file else made.group(file, "poincare")
-    made.group(file, "impact")
-    made.group(file, "orbit")
-    time = file["time"].id
+    there = {*book.file}
+    for name in ("phase", "poincare", "impact", "orbit"):
+        if name not in there:
+            book.group(name)
     for portrait in planned.portraits:
-        group = made.group(phase, portrait.name)
-        made.attributes(group.id, {"x": portrait.x, "y": portrait.y})
-        if portrait.x in file and portrait.y in file:
-            made.link(group, "time", time)
-            made.link(group, "x", file[portrait.x].id)
-            made.link(group, "y", file[portrait.y].id)
-    return [_table(made.group(poincare, section.name), section) for section in planned.sections]
+        path = book.group(f"phase/{portrait.name}")
+        book.attributes(path, {"x": portrait.x, "y": portrait.y})
+        if {portrait.x, portrait.y} <= there:
+            for axis, source in (("time", "time"), ("x", portrait.x), ("y", portrait.y)):
+                book.link(f"{path}/{axis}", source)
+    return [_table(book, section) for section in planned.sections]
 
 
-def _table(group: h5py.Group, section: Any) -> Growing:
+def _table(book: Book, section: Any) -> Growing:
     """The growing table of a section."""
-    made.attributes(group.id, defined(section))
+    path = book.group(f"poincare/{section.name}")
+    book.attributes(path, defined(section))
     fields = [
         Field("time", "s", "simulated time", TIME),
         Field("x", section.x_unit, section.x, X),
         Field("y", section.y_unit, section.y, Y),
     ]
-    return Growing(group, fields, 4, EXPECTED)
+    return Growing(book, path, fields, (4, EXPECTED))
 
 
 def defined(section: Any) -> dict[str, Any]:
@@ -188,65 +188,65 @@ def defined(section: Any) -> dict[str, Any]:
     return told | {"x": section.x, "y": section.y, "after": section.after, "method": LOCATED}
 
 
-def complete(file: h5py.File, planned: Plan) -> None:
+def complete(book: Book, planned: Plan) -> None:
     """What is known only at the end, or follows from what is there."""
+    file = book.file
     for portrait in planned.portraits:
-        group = file["phase"][portrait.name]
-        if "x" not in group:
-            made.link(group, "time", file["time"].id)
-            _store(file, group, "x", portrait.x)
-            _store(file, group, "y", portrait.y)
-    for group in file["poincare"].values():
+        path = f"phase/{portrait.name}"
+        if f"{path}/x" not in book.links:
+            book.link(f"{path}/time", "time")
+            _store(book, f"{path}/x", portrait.x)
+            _store(book, f"{path}/y", portrait.y)
+    for name, group in file["poincare"].items():
         x, y = group["x"], group["y"]
         spread = dispersion(x[:], y[:], x.attrs["units"] == y.attrs["units"])
-        told = {f"dispersion_{name}": value for name, value in spread._asdict().items()}
-        made.attributes(group.id, {n: value for n, value in told.items() if value == value})
+        told = {f"dispersion_{word}": value for word, value in spread._asdict().items()}
+        book.attributes(f"poincare/{name}", {n: v for n, v in told.items() if v == v})
     for name in file["steps"]:
         if all(channel in file["steps"][name] for channel in JOURNAL):
-            _journal(file, name)
+            _journal(book, name)
 
 
-def _journal(file: h5py.File, name: str) -> None:
+def _journal(book: Book, name: str) -> None:
     """Touches and orbit of a joint with clearance."""
-    events, group = file["events"], made.group(file["impact"], name)
+    file, events, path = book.file, book.file["events"], book.group(f"impact/{name}")
     kind, element = events["kind"][:].astype(str), events["element"][:].astype(str)
     onset = np.flatnonzero((kind == "onset") & (element == name))
-    items = {}
     for axis in ("time", "angle", "speed"):
         source = events[axis]
         told = {key: source.attrs[key] for key in ("units", "long_name")}
-        items[axis] = _kept(group, axis, source[:][onset], EXPECTED, told)
-    made.scale(items["time"], "time")
-    made.attach([(items[axis], (items["time"],)) for axis in ("angle", "speed")])
-    orbit, steps = made.group(file["orbit"], name), file["steps"][name]
+        _kept(book, f"{path}/{axis}", source[:][onset], EXPECTED, told)
+    book.scale(f"{path}/time", "time")
+    book.attach([(f"{path}/{axis}", (f"{path}/time",)) for axis in ("angle", "speed")])
     rows = [f"{name}.{channel}" for channel in JOURNAL]
-    sources = {"steps": [steps[channel] for channel in ("time", *JOURNAL)]}
+    sources = {"steps": [f"steps/{name}/{channel}" for channel in ("time", *JOURNAL)]}
     if all(channel in file for channel in rows):
-        sources["rows"] = [file["time"], *(file[channel] for channel in rows)]
-    for part, datasets in sources.items():
-        inner = made.group(orbit, part)
-        for axis, dataset in zip(("time", "x", "y"), datasets, strict=True):
-            made.link(inner, axis, dataset.id)
+        sources["rows"] = ["time", *rows]
+    orbit = book.group(f"orbit/{name}")
+    for part, paths in sources.items():
+        inner = book.group(f"{orbit}/{part}")
+        for axis, source in zip(("time", "x", "y"), paths, strict=True):
+            book.link(f"{inner}/{axis}", source)
 
 
-def _store(file: h5py.File, group: h5py.Group, axis: str, channel: str) -> None:
+def _store(book: Book, path: str, channel: str) -> None:
     """The rows of a channel, or of a component, as a dataset of its own."""
+    file = book.file
     sizes = {n: math.prod(d.shape[1:]) for n, d in file.items() if isinstance(d, h5py.Dataset)}
     name, component = split(channel, sizes)
     source, n = file[name], len(file["time"])
     data = source[:n] if component is None else source[:n, component]
     told = {"units": source.attrs["units"], "long_name": channel}
-    _kept(group, axis, data, 4096, told)
+    _kept(book, path, data, 4096, told)
 
 
-def _kept(group: h5py.Group, axis: str, data: Array, chunk: int, told: dict[str, Any]) -> Any:
-    """A dataset with numbers that are known; what was made."""
+def _kept(book: Book, path: str, data: Array, chunk: int, told: dict[str, Any]) -> None:
+    """A dataset with numbers that are known."""
     space = h5s.create_simple(data.shape, (h5s.UNLIMITED,))
-    item = made.dataset(group, axis, "f8", space, made.chunked((chunk,)))
+    item = book.dataset(path, "f8", space, made.chunked((chunk,)))
     if len(data):
         item.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(data), made.memory(data.dtype))
-    made.attributes(item, told)
-    return item
+    book.attributes(path, told)
 
 
 # --- out of it --------------------------------------------------------------------------------

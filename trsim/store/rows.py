@@ -3,21 +3,17 @@
 from typing import Any
 
 import h5py
-from h5py import h5d
 
-from trsim.store import made
+from trsim.store.made import TEXT, Book
 
 KINDS: dict[type, str] = {float: "f8", int: "i8", bool: "?"}  # all else is text
 
 
-def store(group: h5py.Group, row: Any, rows: list[Any]) -> dict[str, h5d.DatasetID]:
-    """Put rows into an empty group; row: the class of them.  What was made, by name."""
-    return {
-        key: made.values(
-            group, key, [getattr(one, key) for one in rows], KINDS.get(kind, made.TEXT)
-        )
-        for key, kind in row.__annotations__.items()
-    }
+def store(book: Book, path: str, row: Any, rows: list[Any]) -> None:
+    """Put rows into an empty group; row: the class of them."""
+    for key, kind in row.__annotations__.items():
+        values = [getattr(one, key) for one in rows]
+        book.values(f"{path}/{key}", values, KINDS.get(kind, TEXT))
 
 
 def stored(group: h5py.Group, row: Any) -> list[Any]:

@@ -9,6 +9,7 @@ import numpy as np
 from trsim.arrays import Array
 from trsim.store import torn
 from trsim.store.grow import AXES, scales
+from trsim.store.made import Book
 from trsim.store.peaks import Peak, both_ways
 from trsim.store.peaks import store as store_peaks
 from trsim.store.read import reached
@@ -33,7 +34,7 @@ class Salvage:
     """Copies a source into an empty file."""
 
     def __init__(self, source: h5py.File, file: h5py.File) -> None:
-        self.source, self.file = source, file
+        self.source, self.file, self.book = source, file, Book(file)
         self.extremes: dict[str, Extremes] = {}  # dataset -> its extremes
         self.rows: dict[str, int] = {}  # group -> rows
 
@@ -43,7 +44,7 @@ class Salvage:
         file.attrs.update({k: v for k, v in source.attrs.items() if k != "content_sha256"})
         for name in KEPT:
             source.copy(name, file)
-        scales(file, {size for size, name in AXES.items() if name in source})
+        scales(self.book, {size for size, name in AXES.items() if name in source})
         self._table(source, file)
         groups = ["events", *(name for name in AT_EVENTS if name in source)]
         groups += [f"{part}/{name}" for part in ("steps", "poincare") for name in source[part]]
@@ -112,7 +113,7 @@ class Salvage:
             if "/" not in name and name.split(".")[0] in told and len(e.high) in (1, 3):
                 unit = str(self.file[name].attrs.get("units", "-"))
                 found += both_ways(name, unit, np.transpose(e))
-        store_peaks(self.file, found)
+        store_peaks(self.book, found)
         self.file["peaks"].attrs["extremes"] = "of the output rows"
 
     def summary(self) -> dict[str, Any]:

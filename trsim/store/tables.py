@@ -2,11 +2,10 @@
 
 from typing import Any
 
-import h5py
 import numpy as np
 
-from trsim.store import made
 from trsim.store.grow import Field, Growing
+from trsim.store.made import Book
 
 EVENT_COLUMNS = 7  # of a line of events, see solve/march/record.py
 EXPECTED = 256  # rows of the tables whose length nobody knows
@@ -25,12 +24,12 @@ KINDS = (
 AXES = ("normal", "friction_1", "friction_2")  # of an impact, in the order of its impulses
 
 
-def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
+def steps(book: Book, instance: Any, time_field: Field) -> Growing:
     """The table of one contact: its channels at every accepted step in touch."""
     fields = step_fields(instance)
     width = 2 + sum(field.size for field in fields)
-    group = made.group(file["steps"], instance.name)
-    return Growing(group, [time_field, *fields], width, EXPECTED)
+    path = book.group(f"steps/{instance.name}")
+    return Growing(book, path, [time_field, *fields], (width, EXPECTED))
 
 
 def step_fields(instance: Any) -> list[Field]:
@@ -70,14 +69,13 @@ class Touches:
                 impacts.press(e, lines, self.force[e])
 
 
-def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
+def events(book: Book, mechanism: Any, time_field: Field) -> Growing:
     """The table of onsets and separations, of changes of method, and of user events."""
-    group = file["events"]
     if user := mechanism.stages.switches.events:
         asked = [event.name for event in user if event.role not in ("stall", "taut")]
-        made.attribute(group.id, "user", asked)
+        book.attribute("events", "user", asked)
     fields = [time_field, *event_fields(mechanism)]
-    return Growing(group, fields, EVENT_COLUMNS, EXPECTED)
+    return Growing(book, "events", fields, (EVENT_COLUMNS, EXPECTED))
 
 
 def event_fields(mechanism: Any) -> list[Field]:
@@ -129,7 +127,7 @@ def speed_unit(mechanism: Any) -> str:
     return " or ".join(dict.fromkeys(found)) or "m/s"
 
 
-def recorded(file: h5py.File, mechanism: Any, rows: list[Field]) -> Growing | None:
+def recorded(book: Book, mechanism: Any, rows: list[Field]) -> Growing | None:
     """The table of the channels at user events that record them; None where none does.
 
     rows: the fields of the output rows, time first.
@@ -140,10 +138,10 @@ def recorded(file: h5py.File, mechanism: Any, rows: list[Field]) -> Growing | No
     fields = [rows[0], Field("event", "", "which", 1, words=tuple(e.name for e in events))]
     fields += [field._replace(start=field.start + 1) for field in rows[1:]]
     width = 2 + max((c.start + c.size for c in mechanism.columns), default=0)
-    return Growing(made.group(file, "recorded"), fields, width, EXPECTED)
+    return Growing(book, book.group("recorded"), fields, (width, EXPECTED))
 
 
-def jumps(file: h5py.File, mechanism: Any, time_field: Field) -> tuple[Growing, Growing] | None:
+def jumps(book: Book, mechanism: Any, time_field: Field) -> tuple[Growing, Growing] | None:
     """The tables of impulses and of velocities at impacts, and at user events that change what
     holds; None where there are none."""
     events, stages = mechanism.stages.switches.events, mechanism.stages
@@ -177,6 +175,6 @@ def jumps(file: h5py.File, mechanism: Any, time_field: Field) -> tuple[Growing, 
         Field("angular_velocity_after", "rad/s", "the same just after", 12, 3),
     ]
     return (
-        Growing(made.group(file, "impulses"), impulses, 11, EXPECTED),
-        Growing(made.group(file, "velocity_jumps"), velocities, 15, EXPECTED),
+        Growing(book, book.group("impulses"), impulses, (11, EXPECTED)),
+        Growing(book, book.group("velocity_jumps"), velocities, (15, EXPECTED)),
     )
