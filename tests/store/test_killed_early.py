@@ -20,7 +20,7 @@ from trsim.assemble.assemble import assemble
 from trsim.errors import FileError, UsageError
 from trsim.scenario.load import loads
 from trsim.solve import simulate as solver
-from trsim.store import checkpoint, hdf5, own
+from trsim.store import blank, checkpoint, hdf5, own
 from trsim.store.lock import refuse_if_written
 from trsim.store.plain import SIZE
 from trsim.store.recover import recover
@@ -124,7 +124,7 @@ def test_the_first_bytes_of_a_part_file(scene, tmp_path):
 
 
 def test_what_is_somebody_elses_is_not_ours(tmp_path):
-    with h5py.File(tmp_path / "others.h5", "w", libver=hdf5.LIBVER) as file:
+    with h5py.File(tmp_path / "others.h5", "w", libver=blank.LIBVER) as file:
         file["numbers"] = [1.0, 2.0]
     assert not PART.fits((tmp_path / "others.h5").read_bytes())
     assert not PART.fits(bytes(4096) + b"a disk")

@@ -96,6 +96,9 @@ def test_interrupted_run(scenario, mechanism, tmp_path):
     assert "interrupted" in run.attributes["reason"]
     assert run.events.time.tolist() == part.events.time.tolist()
     assert run.summary["contacts"] == part.summary["contacts"]
+    assert [peak[:4] for peak in run.peaks] == [peak[:4] for peak in part.peaks] != []
+    with h5py.File(tmp_path / "x.h5") as file:  # where references lead to what is there
+        assert all(file["peaks"][name].dims[0].keys() == ["channel"] for name in ("value", "time"))
 
 
 def test_recovered_says_what_a_complete_run_says(result, tmp_path):

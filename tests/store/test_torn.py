@@ -74,7 +74,7 @@ def story(tmp_path_factory):
         noted(run)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(solver, "VISIT", 25)  # steps of a block
+        patch.setattr(solver, "VISIT", 20)  # steps of a block
         patch.setattr(hdf5, "FLUSHED", -1.0)
         patch.setattr(grow, "LONGEST", CHUNK)
         patch.setattr(hdf5.h5py, "File", made)

@@ -63,14 +63,17 @@ class Impacts:
 # --- before the first row --------------------------------------------------------------------
 
 
-def begin(book: Book, scenario: Any, mechanism: Any) -> None:
+def begin(book: Book) -> None:
     """Attributes and groups of a file whose run is about to start."""
-    book.attribute("", "format_version", VERSION)
-    book.file.flush()  # who is killed from now on leaves a file that is known as ours: target.py
-    told = {"format": FORMAT, "title": scenario.title, "status": "running", "reason": ""}
+    told = {"format_version": VERSION, "format": FORMAT, "status": "running", "reason": ""}
     book.attributes("", told)
     for name in GROUPS:
         book.group(name)
+
+
+def given(book: Book, scenario: Any, mechanism: Any) -> None:
+    """What is simulated; files of runs with the same channels differ in nothing else so far."""
+    book.attribute("", "title", scenario.title)
     _scenario(book, scenario)
     _mechanism(book, scenario, mechanism)
 

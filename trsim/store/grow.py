@@ -1,6 +1,5 @@
 """Tables that grow while a run goes on: datasets of one length and one time scale."""
 
-from functools import cache
 from typing import Any, NamedTuple
 
 import h5py
@@ -9,7 +8,7 @@ from h5py import h5d, h5s
 
 from trsim.arrays import Array
 from trsim.store import made
-from trsim.store.made import Book
+from trsim.store.made import Book, Layout
 
 LONGEST = 4096  # rows that wait in memory, and rows of a chunk
 ROOM = 4 << 20  # bytes of rows that wait in memory
@@ -36,10 +35,12 @@ class Growing:
 
     def __init__(self, book: Book, path: str, fields: list[Field], rows: tuple[int, int]) -> None:
         """In a group; rows: columns of the rows that come, and how many there may be."""
-        self.fields, self.name, (width, expected) = fields, f"/{path}", rows
+        self.book, self.fields, self.name = book, fields, f"/{path}"
+        width, expected = rows
         self.chunk = chunk = min(LONGEST, max(64, 1 << (max(expected, 1) - 1).bit_length()))
-        paths = [f"{path}/{field.name}" if path else field.name for field in fields]
-        self.items = [_dataset(book, *of, chunk) for of in zip(paths, fields, strict=True)]
+        self.paths = paths = [f"{path}/{f.name}" if path else f.name for f in fields]
+        for of in zip(paths, fields, strict=True):
+            _dataset(book, *of, chunk)
         book.scale(paths[0], fields[0].name)
         axes = [(paths[0], AXES[f.size]) if f.size > 1 else (paths[0],) for f in fields]
         book.attach(list(zip(paths, axes, strict=True))[1:])
@@ -47,11 +48,12 @@ class Growing:
         self.waiting = np.empty((self.room, width))
         self.n_waiting = 0
         self.n = 0  # rows in the file
+        self.held = 0  # of these, that are still the first in `waiting`; all or none
 
     @property
     def datasets(self) -> list[h5py.Dataset]:
         """The datasets as h5py knows them."""
-        return [h5py.Dataset(item) for item in self.items]
+        return [h5py.Dataset(self.book.item(path)) for path in self.paths]
 
     def append(self, rows: Array) -> None:
         """Take rows; what does not fit in memory goes to the file."""
@@ -70,9 +72,16 @@ class Growing:
         if not self.n_waiting:
             return
         rows, n = self.waiting[: self.n_waiting], self.n + self.n_waiting
-        for field, item in zip(self.fields, self.items, strict=True):
-            extended(item, self.n, np.ascontiguousarray(_values(field, rows)))
+        self.held = 0 if self.n else n
+        for field, path in zip(self.fields, self.paths, strict=True):
+            extended(self.book.item(path), self.n, np.ascontiguousarray(_values(field, rows)))
         self.n, self.n_waiting = n, 0
+
+    def tell(self) -> None:
+        """Tell the book of the rows, where all of them are still in memory."""
+        if self.held == self.n:
+            for path, field in zip(self.paths, self.fields, strict=True):
+                self.book.tell(path, _values(field, self.waiting[: self.n]))
 
     def full(self, n: int) -> int:
         """How many of n rows are in chunks that are full: those are never written again."""
@@ -100,21 +109,14 @@ def scales(book: Book, sizes: set[int]) -> None:
         book.scale(path, path)
 
 
-def _dataset(book: Book, path: str, field: Field, chunk: int) -> h5d.DatasetID:
+def _dataset(book: Book, path: str, field: Field, chunk: int) -> None:
     """An empty dataset that grows."""
     shape = () if field.size == 1 else (field.size,)
     dtype = f"S{max(map(len, field.words))}" if field.words else "f8"
-    plan = made.growing((chunk, *shape), not field.words)
-    item: h5d.DatasetID = book.dataset(path, dtype, _empty(shape), plan)
+    unwritten = 0.0 if field.words else np.nan  # a row that was never written says so
+    book.dataset(path, dtype, Layout((0, *shape), (chunk, *shape), unwritten, dated=True))
     told = {"units": field.unit, "long_name": field.meaning}
     book.attributes(path, {name: text for name, text in told.items() if text})
-    return item
-
-
-@cache
-def _empty(shape: tuple[int, ...]) -> h5s.SpaceID:
-    """The space of a dataset without rows; shape: of one row."""
-    return h5s.create_simple((0, *shape), (h5s.UNLIMITED, *shape))
 
 
 def extended(item: h5d.DatasetID, n: int, values: Any) -> None:

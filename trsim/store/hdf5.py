@@ -17,8 +17,8 @@ import h5py
 from trsim.errors import FileError, TrsimError
 from trsim.solve.blocks import Blocks
 from trsim.statuses import Status
+from trsim.store import blank, describe, own, peaks, points, tables
 from trsim.store import checkpoint as checkpoints
-from trsim.store import describe, own, peaks, points, tables
 from trsim.store.checkpoint import Checkpoint
 from trsim.store.content import told_hash
 from trsim.store.disk import check_room, let_go, synced
@@ -31,9 +31,7 @@ from trsim.store.target import CHECKPOINT, PART, replaceable
 
 __all__ = ["Run", "read", "write"]
 
-LIBVER = ("v110", "v110")  # the first with SWMR: every HDF5 since 1.10 reads it
 FLUSHED = 0.5  # s of wall time between two flushes
-CACHE = 128 << 10  # bytes of chunks kept per dataset
 INTERRUPTED: Status = "interrupted"
 Closing = Callable[[h5py.File], dict[str, Any]]
 HASTE = 1.0  # s: a checkpoint that takes longer is not begun after an interrupt
@@ -169,10 +167,11 @@ class Running:
     def begun(self, path: Path, kept: Checkpoint | None = None) -> h5py.File:
         """A file with all that has a name, and the rows of a checkpoint; readers may come."""
         check_room(path)
-        os.close(own.made(path, PART))  # HDF5 would follow a link
-        file = h5py.File(path, "w", libver=LIBVER, rdcc_nbytes=CACHE)
+        self.book = Book()
+        self.declare(self.book)
+        file = blank.begun(path, self.book)
         try:
-            self.declare(Book(file))
+            describe.given(self.book, self.scenario, self.mechanism)
             if kept is not None:
                 refill(self.part, self.tables, kept)
             file.swmr_mode = True
@@ -201,9 +200,8 @@ class Running:
 
     def declare(self, book: Book) -> None:
         """Groups, names and attributes."""
-        self.book = book
         columns = [c for c in self.mechanism.columns if c.wanted or c.name in self.planned.columns]
-        describe.begin(book, self.scenario, self.mechanism)
+        describe.begin(book)
         turned = any(event.turned for event in self.mechanism.stages.switches.events)
         scales(book, {c.size for c in self.mechanism.columns} | ({3} if turned else set()))
         time_field = Field("time", "s", "simulated time", 0)
@@ -281,8 +279,10 @@ class Running:
         with self.file_errors():
             assert self.file is not None  # noqa: S101
             self.flush()
+            for table in self.tables:
+                table.tell()
             self.file.close()
-            with h5py.File(self.part, "r+", libver=LIBVER) as file:
+            with h5py.File(self.part, "r+", libver=blank.LIBVER) as file:
                 self.file, book = file, self.book
                 book.go_on(file)
                 complete = status != INTERRUPTED  # otherwise there are only two seconds

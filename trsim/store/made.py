@@ -6,9 +6,10 @@ is made is the same as h5py makes.  What was told is remembered: reading it agai
 hash would cost as much as writing it.
 """
 
+import hashlib
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -20,6 +21,7 @@ TEXTS, OBJECTS = h5t.py_create(TEXT, logical=True), h5t.py_create(TEXT)  # in fi
 SCALAR = h5s.create(h5s.SCALAR)
 REFERENCES = h5py.vlen_dtype(h5py.ref_dtype)
 USE = np.dtype([("dataset", h5py.ref_dtype), ("dimension", "u4")])  # of a scale
+LISTED, USED = h5t.py_create(REFERENCES), h5t.py_create(USE)  # these in memory
 Scaled = tuple[str, tuple[str, ...]]  # a dataset, and the scales of its dimensions; "" for none
 
 
@@ -57,35 +59,31 @@ def spaced(shape: tuple[int, ...]) -> h5s.SpaceID:
 # --- properties ------------------------------------------------------------------------------
 
 
+class Layout(NamedTuple):
+    """How a dataset is laid out."""
+
+    shape: tuple[int, ...] = ()
+    chunk: tuple[int, ...] = ()  # of one that may grow; none of one that keeps its shape
+    unwritten: float = 0.0  # what stands in rows that were never written
+    dated: bool = False  # whether HDF5 keeps times of it
+
+
 @cache
-def plain() -> h5p.PropDCID:
-    """Properties of a dataset that keeps its shape."""
+def _space(layout: Layout) -> h5s.SpaceID:
+    if not layout.chunk:
+        return spaced(layout.shape)
+    return h5s.create_simple(layout.shape, (h5s.UNLIMITED, *layout.shape[1:]))
+
+
+@cache
+def _plan(layout: Layout) -> h5p.PropDCID:
     made = h5p.create(h5p.DATASET_CREATE)
-    made.set_obj_track_times(False)
-    return made
-
-
-@cache
-def growing(chunk: tuple[int, ...], numbers: bool) -> h5p.PropDCID:
-    """Properties of a dataset that grows."""
-    made = _chunked(chunk)
-    if numbers:
-        made.set_fill_value(np.array(np.nan))  # a row that was never written says so
-    return made
-
-
-@cache
-def chunked(chunk: tuple[int, ...]) -> h5p.PropDCID:
-    """Properties of a dataset that may grow; what is not written is zero."""
-    made = _chunked(chunk)
-    made.set_obj_track_times(False)
-    return made
-
-
-def _chunked(chunk: tuple[int, ...]) -> h5p.PropDCID:
-    made = h5p.create(h5p.DATASET_CREATE)
-    made.set_chunk(chunk)
-    made.set_fletcher32()
+    if layout.chunk:
+        made.set_chunk(layout.chunk)
+        made.set_fletcher32()
+    if layout.unwritten:
+        made.set_fill_value(np.array(layout.unwritten))
+    made.set_obj_track_times(layout.dated)
     return made
 
 
@@ -96,7 +94,7 @@ def _utf8() -> h5p.PropLCID:
     return made
 
 
-def _link(path: str) -> h5p.PropLCID | None:
+def _named(path: str) -> h5p.PropLCID | None:
     return None if path.isascii() else _utf8()
 
 
@@ -113,16 +111,49 @@ class Told:
 
 
 class Book:
-    """Makes the objects of a file, by their paths, and remembers what was told of them."""
+    """Makes the objects of a file, by their paths, and remembers what was told of them.
 
-    def __init__(self, file: h5py.File) -> None:
+    Without a file it remembers what is to be made, until there is one.
+    """
+
+    def __init__(self, file: h5py.File | None = None) -> None:
         self.told = {"": Told()}  # by path
         self.links = dict[str, str]()  # other names of datasets, and their first ones
-        self.go_on(file)
+        self.waiting: list[tuple[Any, ...]] = []  # a method, and what it is given
+        self.file: Any = file
+        self._items = dict[str, Any]()
+        if file is not None:
+            self.go_on(file)
 
     def go_on(self, file: h5py.File) -> None:
-        """Go on in the file, which was opened again."""
-        self.file, self._items = file, dict[str, Any]({"": file.id})
+        """Go on in another file that has what was told, or in the same, opened again."""
+        self.file, self._items, self.waiting = file, {"": file.id}, []
+
+    def put(self, file: h5py.File) -> None:
+        """Make in an empty file what waits."""
+        waiting = self.waiting
+        self.go_on(file)
+        for k, (make, *given) in enumerate(waiting):
+            make(self, *given)
+            if not k:  # who is killed from now on leaves a file that is known as ours: target.py
+                file.flush()
+
+    def digest(self) -> bytes:
+        """A hash of what waits: files of one digest are alike."""
+        found = hashlib.sha256()
+        for make, *given in self.waiting:
+            plain = [(g.dtype.str, g.shape) if isinstance(g, np.ndarray) else g for g in given]
+            found.update(repr((make.__name__, plain)).encode())
+            for array in given:
+                if isinstance(array, np.ndarray):
+                    found.update(coded(array))
+        return found.digest()
+
+    def _do(self, make: Any, *given: Any) -> None:
+        if self.file is None:
+            self.waiting.append((make, *given))
+        else:
+            make(self, *given)
 
     def item(self, path: str) -> Any:
         """The identifier of an object."""
@@ -134,46 +165,45 @@ class Book:
         """The identifier of a dataset for one use: of those that grow there may be many."""
         return self._items.get(path) or h5d.open(self.file.id, path.encode())
 
+    def tell(self, path: str, array: Any) -> None:
+        """Remember all rows of a dataset that grew."""
+        word = "text" if array.dtype.kind in "OS" else array.dtype.str
+        told = self.told[path]
+        told.words, told.data = (word, str(array.shape)), coded(array)
+
     def group(self, path: str) -> str:
         """A new group; its path."""
-        self._items[path] = h5g.create(self.file.id, path.encode(), _link(path))
         self.told[path] = Told()
+        self._do(_group, path)
         return path
 
-    def dataset(self, path: str, dtype: Any, space: h5s.SpaceID, plan: h5p.PropDCID) -> Any:
+    def dataset(self, path: str, dtype: Any, layout: Layout) -> str:
         """A new dataset without values, which are put into the file by whoever has them."""
-        made = kind(np.dtype(dtype))
-        item = h5d.create(self.file.id, path.encode(), made, space, plan, _link(path))
-        self._items[path], self.told[path] = item, Told(("", ""))
-        return item
+        self.told[path] = Told(("", ""))
+        self._do(_dataset, path, np.dtype(dtype), layout)
+        return path
 
     def values(self, path: str, given: Any, dtype: Any = TEXT) -> str:
         """A new dataset that keeps its shape; its path."""
         array = np.asarray(given, dtype)
-        item = self.dataset(path, array.dtype, spaced(array.shape), plain())
-        if array.size:
-            item.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(array), memory(array.dtype))
         word = "text" if array.dtype.kind == "O" else array.dtype.str
         data = coded(given if isinstance(given, str) else array)
         self.told[path] = Told((word, str(array.shape)), data)
+        self._do(_values, path, array)
         return path
 
     def link(self, path: str, of: str) -> None:
         """Another name for a dataset."""
-        h5o.link(self.item(of), self.file.id, path.encode(), _link(path))
         self.links[path] = of
+        self._do(_link, path, of)
 
     def attribute(self, path: str, name: str, value: Any) -> None:
         """Tell something of an object; in place of what was told."""
-        item, key = self.item(path), name.encode()
         array = np.asarray(value, TEXT if isinstance(value, str) else None)
         array = array.astype(TEXT) if array.dtype.kind == "U" else array
-        if h5a.exists(item, key):
-            h5a.delete(item, key)
-        made = h5a.create(item, key, kind(array.dtype), spaced(array.shape))
-        made.write(array, memory(array.dtype))
         if path in self.told:
             self.told[path].attributes[name] = coded(value if isinstance(value, str) else array)
+        self._do(_attribute, path, name, array)
 
     def attributes(self, path: str, told: Mapping[str, Any]) -> None:
         """The same of several things."""
@@ -182,32 +212,70 @@ class Book:
 
     def scale(self, path: str, name: str) -> None:
         """Have a dataset be a scale."""
-        h5ds.set_scale(self.item(path), name.encode())
+        self._do(_scale, path, name)
 
     def attach(self, found: Iterable[Scaled]) -> None:
-        """Attach scales to the dimensions of datasets that have none.
+        """Attach scales to the dimensions of datasets that have none."""
+        self._do(_attach, tuple(found))
 
-        HDF5 would list anew with each dataset what the scale is attached to: as many writes as
-        their square.  Here every scale is told once.
-        """
-        uses: dict[str, list[tuple[Any, int]]] = {}
-        of: dict[str, Any] = {"": np.array([], h5py.ref_dtype)}
-        for path, scales in found:
-            item, lists = self.item(path), np.empty(len(scales), REFERENCES)
-            mine = _reference(item)
-            for k, scale in enumerate(scales):
-                if scale not in of:
-                    of[scale] = np.array([_reference(self.item(scale))], h5py.ref_dtype)
-                    uses[scale] = _uses(self.item(scale))
-                if scale:
-                    uses[scale].append((mine, k))
-                lists[k] = of[scale]
-            made = h5a.create(item, b"DIMENSION_LIST", _of_scales(), spaced(lists.shape))
-            made.write(lists)
-        for scale, pairs in uses.items():
-            listed = np.array(pairs, USE)
-            made = h5a.create(self.item(scale), b"REFERENCE_LIST", _of_uses(), spaced(listed.shape))
-            made.write(listed)
+
+# --- in the file -----------------------------------------------------------------------------
+
+
+def _group(book: Book, path: str) -> None:
+    book._items[path] = h5g.create(book.file.id, path.encode(), _named(path))
+
+
+def _dataset(book: Book, path: str, dtype: Any, layout: Layout) -> Any:
+    space, plan = _space(layout), _plan(layout)
+    made = h5d.create(book.file.id, path.encode(), kind(dtype), space, plan, _named(path))
+    book._items[path] = made
+    return made
+
+
+def _values(book: Book, path: str, array: Any) -> None:
+    made = _dataset(book, path, array.dtype, Layout(array.shape))
+    if array.size:
+        made.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(array), memory(array.dtype))
+
+
+def _link(book: Book, path: str, of: str) -> None:
+    h5o.link(book.item(of), book.file.id, path.encode(), _named(path))
+
+
+def _attribute(book: Book, path: str, name: str, array: Any) -> None:
+    item, key = book.item(path), name.encode()
+    if h5a.exists(item, key):
+        h5a.delete(item, key)
+    made = h5a.create(item, key, kind(array.dtype), spaced(array.shape))
+    made.write(array, memory(array.dtype))
+
+
+def _scale(book: Book, path: str, name: str) -> None:
+    h5ds.set_scale(book.item(path), name.encode())
+
+
+def _attach(book: Book, found: tuple[Scaled, ...]) -> None:
+    """HDF5 would list anew with each dataset what the scale is attached to: as many writes as
+    their square.  Here every scale is told once."""
+    uses: dict[str, list[tuple[Any, int]]] = {}
+    of: dict[str, Any] = {"": np.array([], h5py.ref_dtype)}
+    for path, scales in found:
+        item, lists = book.item(path), np.empty(len(scales), REFERENCES)
+        mine = _reference(item)
+        for k, scale in enumerate(scales):
+            if scale not in of:
+                of[scale] = np.array([_reference(book.item(scale))], h5py.ref_dtype)
+                uses[scale] = _uses(book.item(scale))
+            if scale:
+                uses[scale].append((mine, k))
+            lists[k] = of[scale]
+        made = h5a.create(item, b"DIMENSION_LIST", _of_scales(), spaced(lists.shape))
+        made.write(lists, LISTED)
+    for scale, pairs in uses.items():
+        listed = np.array(pairs, USE)
+        made = h5a.create(book.item(scale), b"REFERENCE_LIST", _of_uses(), spaced(listed.shape))
+        made.write(listed, USED)
 
 
 # --- dimension scales ------------------------------------------------------------------------

@@ -21,7 +21,7 @@ from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.store import made, torn
 from trsim.store.grow import Field, Growing
-from trsim.store.made import Book
+from trsim.store.made import Book, Layout
 
 LOCATED = "located on the dense output of the step"
 EXPECTED = 256  # points
@@ -156,7 +156,7 @@ def _default(scenario: Any, mechanism: Any) -> list[Portrait]:
 
 def declare(book: Book, planned: Plan) -> list[Growing]:
     """The groups with their definitions, portraits of scalar channels as links; the tables."""
-    there = {*book.file}
+    there = {*book.told, *(book.file or ())}
     for name in ("phase", "poincare", "impact", "orbit"):
         if name not in there:
             book.group(name)
@@ -242,10 +242,9 @@ def _store(book: Book, path: str, channel: str) -> None:
 
 def _kept(book: Book, path: str, data: Array, chunk: int, told: dict[str, Any]) -> None:
     """A dataset with numbers that are known."""
-    space = h5s.create_simple(data.shape, (h5s.UNLIMITED,))
-    item = book.dataset(path, "f8", space, made.chunked((chunk,)))
+    book.dataset(path, "f8", Layout(data.shape, (chunk,)))
     if len(data):
-        item.write(h5s.ALL, h5s.ALL, np.ascontiguousarray(data), made.memory(data.dtype))
+        book.item(path).write(h5s.ALL, h5s.ALL, np.ascontiguousarray(data), made.memory(data.dtype))
     book.attributes(path, told)
 
 

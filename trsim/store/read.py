@@ -249,11 +249,11 @@ def read(path: str | os.PathLike) -> Run:
         channels = {n: i for n, i in channels.items() if not n.startswith("component.")}
         return Run(
             path=path,
-            attributes=plain(file.attrs),
+            attributes=root.attributes,
             units={n: item.unit for n, item in channels.items() if n != "time"},
             sizes={n: (*item.shape, 1)[1] for n, item in channels.items() if n != "time"},
-            parts=_parts(file["mechanism"]),
-            contacts=tuple(file["steps"]),
+            parts=_parts(root["mechanism"]),
+            contacts=tuple(root["steps"]),
             rows=_rows_of(file, channels),
         )
 
@@ -345,9 +345,9 @@ def _check(file: h5py.File, path: Path) -> Group:
     return check_sound(file)
 
 
-def _parts(group: h5py.Group) -> dict[str, Part]:
-    words = [group[n].asstr()[:] for n in ("name", "section", "type", "joint", "bodies")]
-    clearance = group["clearance"][:].tolist()
+def _parts(group: Group) -> dict[str, Part]:
+    words = [group.texts(name) for name in ("name", "section", "type", "joint", "bodies")]
+    clearance = h5py.Dataset(group.opened("clearance"))[:].tolist()
     return {
         name: Part(section, kind, joint, tuple(bodies.split()), c)
         for name, section, kind, joint, bodies, c in zip(*words, clearance, strict=True)

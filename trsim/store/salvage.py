@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 
 from trsim.arrays import Array
-from trsim.store import torn
+from trsim.store import rows, torn
 from trsim.store.grow import AXES, scales
 from trsim.store.made import Book
 from trsim.store.peaks import Peak, both_ways
@@ -101,9 +101,10 @@ class Salvage:
     def _peaks(self) -> None:
         """The peaks of the solver if it came so far, otherwise those of the rows."""
         if "value" in self.source["peaks"]:
-            self.source.copy("peaks", self.file)
+            self.book.group("peaks")
+            store_peaks(self.book, rows.stored(self.source["peaks"], Peak))
             return
-        self.file.create_group("peaks")
+        self.book.group("peaks")
         inside = self.file["mechanism"]
         sections = inside["section"].asstr()[:]
         told = {n for n, s in zip(inside["name"].asstr()[:], sections, strict=True)
@@ -114,7 +115,7 @@ class Salvage:
                 unit = str(self.file[name].attrs.get("units", "-"))
                 found += both_ways(name, unit, np.transpose(e))
         store_peaks(self.book, found)
-        self.file["peaks"].attrs["extremes"] = "of the output rows"
+        self.book.attribute("peaks", "extremes", "of the output rows")
 
     def summary(self) -> dict[str, Any]:
         """The recovered run in a few numbers."""

@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-from h5py import h5a, h5d, h5g, h5l, h5o, h5t
+from h5py import h5a, h5d, h5g, h5l, h5o, h5s, h5t
 
 from trsim.statuses import STATUSES
+from trsim.store import made
 from trsim.store.content import attribute
 from trsim.store.tables import AT_EVENTS
 
@@ -48,9 +49,57 @@ class Item(NamedTuple):
 class Group(dict[str, Any]):
     """What is in a group, by name: an Item or a Group."""
 
-    def __init__(self, path: str) -> None:
+    def __init__(self, path: str, item: h5g.GroupID) -> None:
         super().__init__()
-        self.path = path
+        self.path, self.item = path, item
+
+    @property
+    def name(self) -> str:
+        """The name in a message."""
+        return self.path.rstrip("/") or "/"
+
+    def opened(self, name: str) -> h5d.DatasetID:
+        """A dataset of it."""
+        return h5d.open(self.item, name.encode())
+
+    def texts(self, name: str) -> list[str]:
+        """The rows of a dataset of texts."""
+        item = self.opened(name)
+        if not item.get_type().is_variable_str():
+            return list(h5py.Dataset(item).asstr()[:])
+        found = np.empty(item.shape, made.TEXT)
+        item.read(h5s.ALL, h5s.ALL, found, made.OBJECTS)
+        return [text.decode() for text in found.tolist()]
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """The attributes as Python's own numbers and texts."""
+        found = {name.decode(): attribute(self.item, name) for name in _names(self.item)}
+        return {name: _own(value) for name, value in found.items()}
+
+    def has(self, name: str) -> bool:
+        """Whether the group has an attribute."""
+        return bool(h5a.exists(self.item, name.encode()))
+
+    def text(self, name: str) -> str:
+        """An attribute that is a text."""
+        value = _own(attribute(self.item, name.encode())) if self.has(name) else None
+        if not isinstance(value, str):
+            raise Unsound(f"{self.name}: its {name} is no text")
+        return value
+
+    def numbers(self, *names: str) -> None:
+        """Check that there are attributes that are numbers."""
+        for name in names:
+            if not self.has(name) or not _is_number(h5a.open(self.item, name.encode())):
+                raise Unsound(f"{self.name}: its {name} is no number")
+
+    def scalars(self) -> None:
+        """Check that all attributes are texts or numbers."""
+        for name in _names(self.item):
+            attribute = h5a.open(self.item, name)
+            if not _is_text(attribute) and not _is_number(attribute):
+                raise Unsound(f"{self.name}: {printable(repr(name))} is neither")
 
     def groups(self) -> Iterator["Group"]:
         for name, inner in self.items():
@@ -78,10 +127,10 @@ def check_sound(file: h5py.File) -> Group:
     for name in GROUPS:
         if not isinstance(root.get(name), Group):
             raise Unsound(f"it has no group {name}")
-    _root(file, root)
-    _few(file, root)
+    _root(root)
+    _few(root)
     _tables(file, root)
-    _points(file, root)
+    _points(root)
     return root
 
 
@@ -102,7 +151,7 @@ class _Walk:
         if address in self.groups or depth > DEEPEST:
             raise Unsound(f"{printable(path)} is a group in itself")
         self.groups.add(address)
-        found = Group(printable(path))
+        found = Group(printable(path), group)
         for coded, link, address in _links(group):
             self.count += 1
             try:
@@ -126,6 +175,21 @@ class _Walk:
         return found
 
 
+def _names(item: Any) -> list[bytes]:
+    """The names of the attributes of an object."""
+    found: list[bytes] = []
+    h5a.iterate(item, found.append)
+    return found
+
+
+def _own(value: Any) -> Any:
+    """The value of an attribute as Python's own; a text of fixed length stays one of bytes."""
+    if type(value) is bytes:
+        return value.decode("utf-8", "surrogateescape")
+    alone = isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.shape == ())
+    return value.item() if alone else value
+
+
 def _links(group: h5g.GroupID) -> list[tuple[bytes, int, int]]:
     """Names in a group, kinds of their links, and addresses of what these lead to."""
     found: list[tuple[bytes, int, int]] = []
@@ -135,30 +199,35 @@ def _links(group: h5g.GroupID) -> list[tuple[bytes, int, int]]:
 
 def _item(item: h5d.DatasetID, path: str) -> Item:
     """Numbers or texts in one or two dimensions, inside the file."""
-    try:
-        kind, shape = item.dtype, item.shape
-    except (TypeError, ValueError):
-        raise Unsound(f"{printable(path)} is of a kind no result has") from None
-    text = h5py.check_string_dtype(kind) is not None
-    if shape is None or len(shape) > 2 or not (text or kind.kind in "fiub"):
+    kind, shape = item.get_type(), item.shape
+    text = kind.get_class() == h5t.STRING
+    if shape is None or len(shape) > 2 or not (text or _plain(kind)):
         raise Unsound(f"{printable(path)} is of a kind no result has")
     plan = item.get_create_plist()
     if plan.get_layout() == h5d.VIRTUAL or plan.get_external_count():
         raise Unsound(f"{printable(path)} is kept in another file")
-    size = kind.itemsize
+    size = kind.get_size()
     for n in shape:
         size *= n
     if size > ROOM and size > 2 * item.get_storage_size() + ROOM:
         raise Unsound(f"{printable(path)} says to have {shape[0]} rows, which are not in the file")
     unit: Any = attribute(item, b"units") if h5a.exists(item, b"units") else "-"
-    texts = {"units": isinstance(unit, str | bytes), "long_name": True}
-    if h5a.exists(item, b"long_name"):
-        texts["long_name"] = _is_text(h5a.open(item, b"long_name"))
-    for key, is_text in texts.items():
-        if not is_text:
-            raise Unsound(f"{printable(path)}: its {key} is no text")
+    if not isinstance(unit, str | bytes):
+        raise Unsound(f"{printable(path)}: its units is no text")
+    if h5a.exists(item, b"long_name") and not _is_text(h5a.open(item, b"long_name")):
+        raise Unsound(f"{printable(path)}: its long_name is no text")
     unit = unit.decode("utf-8", "surrogateescape") if isinstance(unit, bytes) else unit
     return Item(TEXT if text else NUMBERS, shape, unit)
+
+
+def _plain(kind: h5t.TypeID) -> bool:
+    """Whether a type is one of numbers, as numpy has them."""
+    if kind.get_class() == h5t.FLOAT and kind.equal(made.NUMBERS):  # as most are
+        return True
+    try:
+        return kind.dtype.kind in "fiub"
+    except (TypeError, ValueError):
+        return False
 
 
 def _is_text(attribute: h5a.AttrID) -> bool:
@@ -166,45 +235,19 @@ def _is_text(attribute: h5a.AttrID) -> bool:
 
 
 def _is_number(attribute: h5a.AttrID) -> bool:
-    return attribute.shape == () and attribute.dtype.kind in "fiub"
-
-
-# --- attributes ------------------------------------------------------------------------------
-
-
-def _text(holder: Any, name: str) -> str:
-    value = holder.attrs.get(name)
-    if not isinstance(value, str):
-        raise Unsound(f"{printable(holder.name)}: its {name} is no text")
-    return value
-
-
-def _number(holder: Any, *names: str) -> None:
-    for name in names:
-        coded = name.encode()
-        if not h5a.exists(holder.id, coded) or not _is_number(h5a.open(holder.id, coded)):
-            raise Unsound(f"{printable(holder.name)}: its {name} is no number")
-
-
-def _scalars(holder: Any) -> None:
-    """All attributes are texts or numbers."""
-    for k in range(h5a.get_num_attrs(holder.id)):
-        attribute = h5a.open(holder.id, index=k)
-        if not _is_text(attribute) and not _is_number(attribute):
-            raise Unsound(f"{printable(holder.name)}: {printable(repr(attribute.name))} is neither")
+    return attribute.shape == () and _plain(attribute.get_type())
 
 
 # --- what a result has -----------------------------------------------------------------------
 
 
-def _root(file: h5py.File, root: Group) -> None:
+def _root(root: Group) -> None:
     """The attributes of the file, and the rows of its channels."""
-    for name in AT_ROOT:
-        _text(file, name)
-    if "content_sha256" in file.attrs:
-        _text(file, "content_sha256")
-    if file.attrs["status"] not in STATUSES:
-        raise Unsound(f"its status is '{printable(file.attrs['status'])}', which no run has")
+    told = {name: root.text(name) for name in AT_ROOT}
+    if root.has("content_sha256"):
+        root.text("content_sha256")
+    if told["status"] not in STATUSES:
+        raise Unsound(f"its status is '{printable(told['status'])}', which no run has")
     root.want("time", NUMBERS)
     for name, item in root.items():
         if isinstance(item, Item) and item.shape:
@@ -213,31 +256,31 @@ def _root(file: h5py.File, root: Group) -> None:
                 raise Unsound(f"{printable(name)} is not there as {kind}")
 
 
-def _few(file: h5py.File, root: Group) -> None:
+def _few(root: Group) -> None:
     """What there is once: scenario, mechanism, summary, solver, peaks."""
     for name in ("solver", "provenance", "summary"):
-        _scalars(file[name])
+        root[name].scalars()
     scenario, mechanism, solver = root["scenario"], root["mechanism"], root["solver"]
     for name in ("text", "resolved", "sha256"):
         scenario.want(name, TEXT, 0)
     scenario.want_all({"files": TEXT, "files_sha256": TEXT}, alike=True)
     mechanism.want_all(OF_PARTS, alike=True)
     mechanism.want_all(dict.fromkeys(("redundant", "not_unique", "notes"), TEXT))
-    _number(file["mechanism"], "mobility")
+    mechanism.numbers("mobility")
     if "warnings" in solver:
         solver.want("warnings", TEXT)
-    if "steps" in file["solver"].attrs:
-        _text(file["solver"], "method")
-        _number(file["solver"], *OF_SOLVER)
+    if solver.has("steps"):
+        solver.text("method")
+        solver.numbers(*OF_SOLVER)
     if root["peaks"]:
         root["peaks"].want_all(OF_PEAKS, alike=True)
-    summary = file["summary"]
-    if "rows" in summary.attrs:
-        _number(summary, "time", "rows", "events")
-    for name, _ in zip(root["summary"], root["summary"].groups(), strict=True):
+    summary = root["summary"]
+    if summary.has("rows"):
+        summary.numbers("time", "rows", "events")
+    for name, contact in zip(summary, summary.groups(), strict=True):
         if name not in root["steps"]:
             raise Unsound(f"summary/{printable(name)} is of no contact")
-        _number(summary[name], *OF_CONTACT)
+        contact.numbers(*OF_CONTACT)
 
 
 def _tables(file: h5py.File, root: Group) -> None:
@@ -245,7 +288,7 @@ def _tables(file: h5py.File, root: Group) -> None:
     events = root["events"]
     events.want_all(OF_EVENTS)
     events.want_all({k: v for k, v in (("did", TEXT), ("work", NUMBERS)) if k in events})
-    user = file["events"].attrs.get("user", np.array([], object))
+    user = file["events"].attrs["user"] if events.has("user") else np.array([], object)
     if not isinstance(user, np.ndarray) or not all(isinstance(n, str) for n in user.flat):
         raise Unsound("events: its user is no list of names")
     tables = [events, *root["steps"].groups()]
@@ -265,26 +308,25 @@ def _tables(file: h5py.File, root: Group) -> None:
                 raise Unsound(f"{table.path}{printable(name)} is not there as {NUMBERS}")
 
 
-def _points(file: h5py.File, root: Group) -> None:
+def _points(root: Group) -> None:
     """Portraits and sections."""
     for section in ("phase", "poincare"):
-        for name, inner in zip(root[section], root[section].groups(), strict=True):
-            group = file[section][name]
-            _scalars(group)
+        for inner in root[section].groups():
+            inner.scalars()
             for axis in ("x", "y"):
-                _text(group, axis)
-                if axis in inner and "units" not in group[axis].attrs:
+                inner.text(axis)
+                if axis in inner and not h5a.exists(inner.item, b"units", obj_name=axis.encode()):
                     raise Unsound(f"{inner.path}{axis} has no units")
             there = [k for k in ("time", "x", "y") if k in inner or section == "poincare"]
             inner.want_all(dict.fromkeys(there, NUMBERS))
             if section == "poincare":
-                _surface(group)
+                _surface(inner)
 
 
-def _surface(group: Any) -> None:
+def _surface(group: Group) -> None:
     """Where a section is: at a channel's zero, at an interval, or at an onset."""
-    if "every" in group.attrs:
-        _number(group, "every")
+    if group.has("every"):
+        group.numbers("every")
     else:
-        for name in ("at_onset",) if "at_onset" in group.attrs else ("when", "crosses"):
-            _text(group, name)
+        for name in ("at_onset",) if group.has("at_onset") else ("when", "crosses"):
+            group.text(name)
