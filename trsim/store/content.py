@@ -62,7 +62,7 @@ def _told(book: Book, path: str, inside: Any, digest: Any, seen: dict[str, str])
             else:
                 _say(digest, "data", f"/{inner}", *told.words)
                 _remembered(told, digest)
-                digest.update(told.data)
+                digest.update(coded(told.data))
 
 
 def _remembered(told: Told, digest: Any) -> None:
@@ -130,17 +130,22 @@ def attribute(item: Any, name: bytes) -> Any:
     opened = h5a.open(item, name)
     kind = opened.get_type()
     family = kind.get_class()
-    if opened.shape == () and family == h5t.STRING and kind.is_variable_str():
+    if alone(opened) and family == h5t.STRING and kind.is_variable_str():
         text = np.empty((), made.TEXT)
         opened.read(text, made.OBJECTS)
         if isinstance(text[()], str | bytes):  # nothing else than a text is there
             return text[()]
-    elif opened.shape == () and family in (h5t.FLOAT, h5t.INTEGER):
+    elif alone(opened) and family in (h5t.FLOAT, h5t.INTEGER):
         number = np.empty((), kind.dtype)
         opened.read(number)
         return number
     high = h5py.Group if isinstance(item, h5g.GroupID) else h5py.Dataset
     return high(item).attrs[name.decode()]
+
+
+def alone(attribute: h5a.AttrID) -> bool:
+    """Whether an attribute is one thing, no array of them and not nothing."""
+    return bool(attribute.get_space().get_simple_extent_type() == h5s.SCALAR)
 
 
 def _say(digest: Any, *words: str) -> None:

@@ -290,9 +290,9 @@ class Running:
                 found = peaks.table(self.mechanism, extremes, self.magnitudes)
                 if complete:
                     points.complete(book, self.planned)
-                    found = peaks.with_strokes(found, file)
+                    found = peaks.with_strokes(found, book)
                 peaks.store(book, found)
-                title = str(file.attrs["title"])
+                title = self.scenario.title
                 summary = describe.summary(self, title, status, reason, outcome, found)
                 describe.end(book, summary, self.scenario, outcome, provenance)
                 if complete:

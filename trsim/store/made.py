@@ -8,20 +8,20 @@ hash would cost as much as writing it.
 
 import hashlib
 from collections.abc import Iterable, Mapping
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-from h5py import h5a, h5d, h5ds, h5g, h5o, h5p, h5r, h5s, h5t
+from h5py import h5a, h5d, h5ds, h5g, h5o, h5p, h5s, h5t
 
 TEXT = h5py.string_dtype()
 NUMBERS = h5t.py_create(np.dtype("f8"))
 TEXTS, OBJECTS = h5t.py_create(TEXT, logical=True), h5t.py_create(TEXT)  # in files, in memory
 SCALAR = h5s.create(h5s.SCALAR)
-REFERENCES = h5py.vlen_dtype(h5py.ref_dtype)
-USE = np.dtype([("dataset", h5py.ref_dtype), ("dimension", "u4")])  # of a scale
-LISTED, USED = h5t.py_create(REFERENCES), h5t.py_create(USE)  # these in memory
+# as HDF5 has them in memory: what uses a scale, and the number and place of scales of a dimension
+USE = np.dtype({"names": ["dataset", "dimension"], "formats": ["u8", "u4"], "itemsize": 16})
+LIST = np.dtype([("number", np.uintp), ("place", np.uintp)])
 Scaled = tuple[str, tuple[str, ...]]  # a dataset, and the scales of its dimensions; "" for none
 
 
@@ -51,6 +51,7 @@ def coded(value: Any) -> Any:
     return array.data if array.size else b""
 
 
+@lru_cache(maxsize=256)
 def spaced(shape: tuple[int, ...]) -> h5s.SpaceID:
     """The space of an array that keeps its shape."""
     return h5s.create_simple(shape) if shape else SCALAR
@@ -106,7 +107,7 @@ class Told:
 
     def __init__(self, words: tuple[str, str] | None = None, data: Any = None) -> None:
         self.words = words  # dtype and shape of a dataset; None of a group
-        self.data = data  # bytes; None where they are in the file alone
+        self.data = data  # array or text; None where it is in the file alone
         self.attributes: dict[str, Any] = {}  # name -> bytes
 
 
@@ -169,7 +170,23 @@ class Book:
         """Remember all rows of a dataset that grew."""
         word = "text" if array.dtype.kind in "OS" else array.dtype.str
         told = self.told[path]
-        told.words, told.data = (word, str(array.shape)), coded(array)
+        told.words, told.data = (word, str(array.shape)), array
+
+    def has(self, path: str) -> bool:
+        """Whether there is an object."""
+        return path in self.told or path in self.file
+
+    def rows(self, path: str) -> Any:
+        """The rows of a dataset: an array where they are remembered, else what reads them."""
+        told = self.told.get(path)
+        return self.file[path] if told is None or told.data is None else told.data
+
+    def said(self, path: str, name: str) -> str:
+        """An attribute that is a text."""
+        told = self.told.get(path)
+        if told is None or name not in told.attributes:
+            return str(self.file[path].attrs[name])
+        return str(told.attributes[name].decode())
 
     def group(self, path: str) -> str:
         """A new group; its path."""
@@ -187,7 +204,7 @@ class Book:
         """A new dataset that keeps its shape; its path."""
         array = np.asarray(given, dtype)
         word = "text" if array.dtype.kind == "O" else array.dtype.str
-        data = coded(given if isinstance(given, str) else array)
+        data = given if isinstance(given, str) else array
         self.told[path] = Told((word, str(array.shape)), data)
         self._do(_values, path, array)
         return path
@@ -258,24 +275,25 @@ def _scale(book: Book, path: str, name: str) -> None:
 def _attach(book: Book, found: tuple[Scaled, ...]) -> None:
     """HDF5 would list anew with each dataset what the scale is attached to: as many writes as
     their square.  Here every scale is told once."""
-    uses: dict[str, list[tuple[Any, int]]] = {}
-    of: dict[str, Any] = {"": np.array([], h5py.ref_dtype)}
+    uses: dict[str, list[tuple[int, int]]] = {}
+    of: dict[str, Any] = {}
     for path, scales in found:
-        item, lists = book.item(path), np.empty(len(scales), REFERENCES)
+        item, lists = book.item(path), np.zeros(len(scales), LIST)
         mine = _reference(item)
         for k, scale in enumerate(scales):
+            if not scale:
+                continue
             if scale not in of:
-                of[scale] = np.array([_reference(book.item(scale))], h5py.ref_dtype)
+                of[scale] = np.array([_reference(book.item(scale))], np.uint64)
                 uses[scale] = _uses(book.item(scale))
-            if scale:
-                uses[scale].append((mine, k))
-            lists[k] = of[scale]
+            uses[scale].append((mine, k))
+            lists[k] = 1, of[scale].ctypes.data
         made = h5a.create(item, b"DIMENSION_LIST", _of_scales(), spaced(lists.shape))
-        made.write(lists, LISTED)
+        made.write(lists, _of_scales())
     for scale, pairs in uses.items():
         listed = np.array(pairs, USE)
         made = h5a.create(book.item(scale), b"REFERENCE_LIST", _of_uses(), spaced(listed.shape))
-        made.write(listed, USED)
+        made.write(listed, _of_uses())
 
 
 # --- dimension scales ------------------------------------------------------------------------
@@ -296,16 +314,17 @@ def _of_uses() -> h5t.TypeCompoundID:
     return made
 
 
-def _reference(item: h5d.DatasetID) -> Any:
-    return h5r.create(item, b".", h5r.OBJECT)
+def _reference(item: h5d.DatasetID) -> int:
+    """What leads to an object in its file."""
+    return int(h5o.get_info(item).addr)
 
 
-def _uses(scale: h5d.DatasetID) -> list[tuple[Any, int]]:
+def _uses(scale: h5d.DatasetID) -> list[tuple[int, int]]:
     """What a scale is attached to so far; its list is taken away."""
     if not h5a.exists(scale, b"REFERENCE_LIST"):
         return []
     opened = h5a.open(scale, b"REFERENCE_LIST")
     found = np.empty(opened.shape, USE)
-    opened.read(found)
+    opened.read(found, _of_uses())
     h5a.delete(scale, b"REFERENCE_LIST")
     return list(found.tolist())

@@ -9,7 +9,6 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -91,9 +90,11 @@ def both_ways(channel: str, unit: str, extremes: Array) -> Iterator[Peak]:
         yield Peak(name, "smallest", low, low_time, np.nan, unit)
 
 
-def with_strokes(peaks: list[Peak], file: h5py.File) -> list[Peak]:
+def with_strokes(peaks: list[Peak], book: Book) -> list[Peak]:
     """The peaks with the stroke at their times, by linear interpolation of the rows."""
-    return at_strokes(peaks, file["time"], file["stroke"]) if "stroke" in file else peaks
+    if not book.has("stroke"):
+        return peaks
+    return at_strokes(peaks, book.rows("time"), book.rows("stroke"))
 
 
 def at_strokes(peaks: list[Peak], time: Any, stroke: Any) -> list[Peak]:
@@ -113,6 +114,6 @@ def store(book: Book, peaks: list[Peak]) -> None:
     book.scale("peaks/channel", "channel")
     book.attach([(f"peaks/{name}", ("peaks/channel",)) for name in Peak._fields[1:]])
     book.attribute("peaks/time", "units", "s")
-    if "stroke" in book.file:
-        book.attribute("peaks/stroke", "units", book.file["stroke"].attrs["units"])
+    if book.has("stroke"):
+        book.attribute("peaks/stroke", "units", book.said("stroke", "units"))
     book.attribute("peaks", "extremes", "of the motion, between steps too")

@@ -197,30 +197,31 @@ def complete(book: Book, planned: Plan) -> None:
             book.link(f"{path}/time", "time")
             _store(book, f"{path}/x", portrait.x)
             _store(book, f"{path}/y", portrait.y)
-    for name, group in file["poincare"].items():
-        x, y = group["x"], group["y"]
-        spread = dispersion(x[:], y[:], x.attrs["units"] == y.attrs["units"])
+    for name in file["poincare"]:
+        x, y = f"poincare/{name}/x", f"poincare/{name}/y"
+        alike = book.said(x, "units") == book.said(y, "units")
+        spread = dispersion(book.rows(x)[:], book.rows(y)[:], alike)
         told = {f"dispersion_{word}": value for word, value in spread._asdict().items()}
         book.attributes(f"poincare/{name}", {n: v for n, v in told.items() if v == v})
     for name in file["steps"]:
-        if all(channel in file["steps"][name] for channel in JOURNAL):
+        if all(book.has(f"steps/{name}/{channel}") for channel in JOURNAL):
             _journal(book, name)
 
 
 def _journal(book: Book, name: str) -> None:
     """Touches and orbit of a joint with clearance."""
-    file, events, path = book.file, book.file["events"], book.group(f"impact/{name}")
-    kind, element = events["kind"][:].astype(str), events["element"][:].astype(str)
-    onset = np.flatnonzero((kind == "onset") & (element == name))
+    path = book.group(f"impact/{name}")
+    kind, element = (book.rows(f"events/{word}")[:] for word in ("kind", "element"))
+    onset = np.flatnonzero((kind == b"onset") & (element == name.encode()))
     for axis in ("time", "angle", "speed"):
-        source = events[axis]
-        told = {key: source.attrs[key] for key in ("units", "long_name")}
-        _kept(book, f"{path}/{axis}", source[:][onset], EXPECTED, told)
+        source = f"events/{axis}"
+        told = {key: book.said(source, key) for key in ("units", "long_name")}
+        _kept(book, f"{path}/{axis}", book.rows(source)[:][onset], EXPECTED, told)
     book.scale(f"{path}/time", "time")
     book.attach([(f"{path}/{axis}", (f"{path}/time",)) for axis in ("angle", "speed")])
     rows = [f"{name}.{channel}" for channel in JOURNAL]
     sources = {"steps": [f"steps/{name}/{channel}" for channel in ("time", *JOURNAL)]}
-    if all(channel in file for channel in rows):
+    if all(book.has(channel) for channel in rows):
         sources["rows"] = ["time", *rows]
     orbit = book.group(f"orbit/{name}")
     for part, paths in sources.items():

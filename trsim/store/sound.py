@@ -14,7 +14,7 @@ from h5py import h5a, h5d, h5g, h5l, h5o, h5s, h5t
 
 from trsim.statuses import STATUSES
 from trsim.store import made
-from trsim.store.content import attribute
+from trsim.store.content import alone, attribute
 from trsim.store.tables import AT_EVENTS
 
 ROOM = 1 << 26  # bytes a dataset may have without being in the file: rows that were made room for
@@ -231,11 +231,11 @@ def _plain(kind: h5t.TypeID) -> bool:
 
 
 def _is_text(attribute: h5a.AttrID) -> bool:
-    return attribute.shape == () and attribute.get_type().get_class() == h5t.STRING
+    return alone(attribute) and attribute.get_type().get_class() == h5t.STRING
 
 
 def _is_number(attribute: h5a.AttrID) -> bool:
-    return attribute.shape == () and _plain(attribute.get_type())
+    return alone(attribute) and _plain(attribute.get_type())
 
 
 # --- what a result has -----------------------------------------------------------------------
