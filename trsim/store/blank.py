@@ -51,7 +51,7 @@ def begun(path: Path, book: Book) -> h5py.File:
         raise
     kept[digest] = whole if len(whole) <= LARGEST else b""
     while len(kept) > MOST:
-        del kept[next(iter(kept))]
+        kept.pop(next(iter(kept)), None)
     return file
 
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
+from h5py import h5d
 from numpy.typing import NDArray
 
 from trsim.arrays import Array
@@ -92,7 +93,8 @@ class Run:
     def _rows(self, stored: str) -> Array:
         """The rows of a channel that is stored."""
         with opened(self.path) as file:
-            return torn.rows(file[stored], 0, self.rows)
+            dataset = h5py.Dataset(h5d.open(file.id, stored.encode()))
+            return torn.rows(dataset, 0, self.rows)
 
     def _magnitude(self, name: str) -> Array:
         """The rows of the length of a vector; of a number those of its size without the sign."""
