@@ -28,7 +28,7 @@ from trsim.assemble.rows import (
 from trsim.assemble.sections import sections
 from trsim.assemble.stages import Choice, Stages, silent
 from trsim.assemble.switches import SECTION, Switches, locks, parks, switches
-from trsim.assemble.tables import drawn, extent
+from trsim.assemble.tables import drawn
 from trsim.assemble.torsion import check_torsion
 from trsim.assemble.waves import swinging
 from trsim.elements.contract import Pair
@@ -214,7 +214,7 @@ def pack(  # type: ignore[no-untyped-def]
         at.notes[told:] = [f"{line}{section}.{name}.{note}" for note in at.notes[told:]]
     at.switches = switches(scenario, at, instances) if drives is None else Switches()
     if at.end is not None:
-        at.jumped = find_jumps(at, instances, extent(at))
+        at.jumped = find_jumps(at, instances)
     if at.jumped and at.switches.jumps < 0:
         at.switches = replace(at.switches, jumps=at.state(0.0))
     for name in coordinates:

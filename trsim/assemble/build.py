@@ -26,14 +26,13 @@ from trsim.assemble.poles import poles
 from trsim.assemble.projection import on_rows, poses_and_rows, project_positions
 from trsim.assemble.rubbing import rubbing, rubs_with
 from trsim.assemble.rubbing import table as rubbing_table
+from trsim.assemble.sizes import Sizes
 from trsim.assemble.tables import (
     contact_numbers,
     drawn,
     eccentricity,
-    extent,
     judged,
     kernels,
-    levers,
     lone,
     masses,
     norm,
@@ -56,11 +55,13 @@ class Parts(NamedTuple):
 
     at: Addresses
     instances: list[Instance]
+    sizes: Sizes
     shared: dict[str, Any]  # fields of Model
 
     @classmethod
     def of(cls, at: Addresses, instances: list[Instance]) -> Parts:
-        solver, size = at.scenario.solver, extent(at)
+        solver, sizes = at.scenario.solver, Sizes.of(at)
+        size = sizes.whole
         contacts = [e for e, i in enumerate(instances) if i.row.contact is not None]
         of_contacts = [i.row.contact for i in instances if i.row.contact is not None]
         touching = [instances[e] for e in contacts]
@@ -112,7 +113,7 @@ class Parts(NamedTuple):
             **pulsed(swinging(at, instances, at.waves)),
             "size": size,
         }
-        return cls(at, instances, shared)
+        return cls(at, instances, sizes, shared)
 
 
 def build(
@@ -127,17 +128,16 @@ def build(
     hubs: those of its solve; without them its rows can be looked at, and its equations not solved.
     redundant: rows that are looked at only.
     """
-    at, instances, shared = parts
+    at, instances, sizes, shared = parts
     n, size, contacts = len(at.frames), shared["size"], shared["contact"].tolist()
     con, par = tables(instances, [*rows, *redundant])
-    of = masses(at, d)
-    mass, inertia = of.mass, of.inertia
+    of = masses(at, d, sizes)
     solver = at.scenario.solver
     d_node = 4 if d == 3 else 6
     n_nodes = n - at.n_rigid
     q_node, v_node = (3 if d == 3 else 7) * (at.n_rigid - 1), d * (at.n_rigid - 1)
     frames = [r.frames for r in rows]
-    arms = levers(at, lone(at, size, mass, inertia))
+    arms = sizes.levers(lone(at, sizes, of))
     scale_kind, scale = norm(at, d, size, arms)
     if len(of.light):
         unfit([at.owners[f] for f in of.light], of.light, [i.row for i in instances],
@@ -151,9 +151,9 @@ def build(
         q_node=q_node,
         v_node=v_node,
         m=len(rows),
-        unequal=int(unequal(at, mass, inertia, d)),
-        mass=mass,
-        inertia=inertia,
+        unequal=int(hubs is not None and unequal(at, of, sizes.arms, d)),
+        mass=of.mass,
+        inertia=of.inertia,
         mass_inverse=of.mass_inverse,
         inertia_inverse=of.inertia_inverse,
         light=of.light,
