@@ -14,6 +14,7 @@ from trsim.assemble.layout import columns_of_forces, layout
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
 from trsim.assemble.planar import Planarity, listed, planarity
+from trsim.assemble.reduce import Drawn
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
@@ -55,21 +56,20 @@ def assemble(
     at, instances = pack(scenario, ideal, drives, coordinates, stiff)
     rows = all_rows(instances)
     parts = Parts.of(at, instances)
-    full, y6 = as_drawn(parts, rows)  # one workspace for all
-    verdict = (
-        planarity(scenario, full, y6, at, instances, rows) if planar is None else Planarity(planar)
-    )
+    look = Drawn.of(*as_drawn(parts, rows), rows)  # one workspace for all
+    verdict = planarity(scenario, look, at, instances) if planar is None else Planarity(planar)
     planar = verdict.planar
     check_inertias(at, planar, listed(verdict.reasons))
     if not planar:
         check_space(at, instances)
         if at.beams and drives is None and not ideal:  # of a start the run has said so
-            check_torsion(full, y6, at, instances, rows)
-    kept, found = choose_rows(full, y6, instances, planar, rows)
+            check_torsion(look, at, instances)
+    chosen = choose_rows(look, instances, planar)
+    kept, found = chosen.kept, chosen.found
     if drives is None and not ideal:  # of a start clearances may be left out
-        check_shaky(full, y6, instances, planar, rows, found)
+        check_shaky(look, instances, planar, chosen)
     d = 3 if planar else 6
-    own = hubs(full, y6, rows, kept, planar, spans(at))
+    own = hubs(look, kept, planar, spans(at))
     model = build(parts, kept, d, own, dropped(rows, found))
     y0 = drawn(at, d)
     columns: list[Column] = []
@@ -81,7 +81,7 @@ def assemble(
         waves = swinging(at, instances, at.waves + at.shown)
         model, shown = sections(scenario, model, instances, columns, waves)
     names = [f"{r.element}.{r.axis}" for r in rows]
-    unique, not_unique = reactions(full, y6, planar)
+    unique, not_unique = reactions(look, chosen, planar)
     if drives is None and not ideal:
         check_pressed(instances, kept, planar)
         check_rubbing(instances, rows, not_unique, found)
@@ -124,16 +124,15 @@ def stages(at: Addresses, instances: list[Instance], first: Choice, planar: bool
 
     def built(instances: list[Instance], rows: list[RowName]) -> Choice:
         parts = Parts.of(at, instances)
-        full, y6 = as_drawn(parts, rows)
-        kept, found = choose_rows(full, y6, instances, planar, rows)
-        check_rubbing(instances, rows, reactions(full, y6, planar)[1], found)
-        own, left = hubs(full, y6, rows, kept, planar, spans(at)), dropped(rows, found)
-        return Choice(build(parts, kept, d, own, left), kept, left)
+        look = Drawn.of(*as_drawn(parts, rows), rows)
+        chosen = choose_rows(look, instances, planar)
+        check_rubbing(instances, rows, reactions(look, chosen, planar)[1], chosen.found)
+        own, left = hubs(look, chosen.kept, planar, spans(at)), dropped(rows, chosen.found)
+        return Choice(build(parts, chosen.kept, d, own, left), chosen.kept, left)
 
     def rebuilt(instances: list[Instance], kept: list[RowName], left: list[RowName]) -> Model:
         parts, rows = Parts.of(at, instances), [*kept, *left]
-        full, y6 = as_drawn(parts, rows)
-        own = hubs(full, y6, rows, kept, planar, spans(at))
+        own = hubs(Drawn.of(*as_drawn(parts, rows), rows), kept, planar, spans(at))
         return build(parts, kept, d, own, left)
 
     angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}

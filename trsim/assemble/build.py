@@ -28,6 +28,7 @@ from trsim.assemble.rubbing import rubbing, rubs_with
 from trsim.assemble.rubbing import table as rubbing_table
 from trsim.assemble.sizes import Sizes
 from trsim.assemble.tables import (
+    Masses,
     contact_numbers,
     drawn,
     eccentricity,
@@ -45,8 +46,10 @@ from trsim.assemble.tables import (
 )
 from trsim.assemble.travel import travels
 from trsim.assemble.waves import pulsed, swinging
-from trsim.elements.contract import N_BOOK
+from trsim.elements.contract import N_BOOK, PHASE, UNLOCATED
 from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, Scene, scene
+
+NONE_OF_THEM = np.zeros(0, np.int64)
 
 
 class Parts(NamedTuple):
@@ -132,7 +135,6 @@ def build(
     n, size, contacts = len(at.frames), shared["size"], shared["contact"].tolist()
     con, par = tables(instances, [*rows, *redundant])
     of = masses(at, d, sizes)
-    solver = at.scenario.solver
     d_node = 4 if d == 3 else 6
     n_nodes = n - at.n_rigid
     q_node, v_node = (3 if d == 3 else 7) * (at.n_rigid - 1), d * (at.n_rigid - 1)
@@ -163,13 +165,10 @@ def build(
         par=par,
         **turns(at, d),
         **lines([*frames, *(r.frames for r in redundant)]),
-        **(no_pattern(len(frames), n) if hubs is None else pattern(frames, n, spans(at), hubs)),
+        **(looked_at(len(frames), n) if hubs is None else solved(at, instances, rows, hubs, of)),
         **watched_rows(instances, rows, redundant, size),
         shared_out=least_norm.address() if redundant else 0,
         **band_tables(list(at.beams.values()), frames, n),
-        near=near(solver, rows, spans(at)),
-        near_rows=0.0 if len(of.light) else near_rows(solver, rows, spans(at)),
-        looped=looped(instances, rows, spans(at)),
         scale_kind=scale_kind,
         scale=scale,
         contact_par=contact_numbers(at, instances, contacts, arms),
@@ -177,10 +176,29 @@ def build(
     )
 
 
+def looked_at(m: int, n: int) -> dict[str, Any]:
+    """What tells a model how it is solved, of one whose m rows are only looked at."""
+    return {**no_pattern(m, n), "near": 0.0, "near_rows": 0.0, "looped": NONE_OF_THEM}
+
+
+def solved(
+    at: Addresses, instances: list[Instance], rows: list[RowName], hubs: Hubs, of: Masses
+) -> dict[str, Any]:
+    """The same of one that is."""
+    solver, bars = at.scenario.solver, spans(at)
+    return {
+        **pattern([r.frames for r in rows], len(at.frames), bars, hubs),
+        "near": near(solver, rows, bars),
+        "near_rows": 0.0 if len(of.light) else near_rows(solver, rows, bars),
+        "looped": looped(instances, rows, bars),
+    }
+
+
 def as_drawn(parts: Parts, rows: list[RowName]) -> tuple[Scene, NDArray[np.float64]]:
     """The scene with some rows in space, its angles on the turns of the drawing (from others a row
     that relates angles is far from closed), and its state."""
     full = scene(build(parts, rows, 6))
+    full.mem[:, PHASE] = UNLOCATED
     for x in parts.at.coordinates.values():
         full.branch[x.entry] = x.drawn
     return full, drawn(parts.at, 6)

@@ -70,7 +70,7 @@ class Places:
         nodes = [place for beam in self.beams.values() for place in beam.places]
         self.at_start = np.array([(0.0, 0.0, 0.0), *(s.at for s in rigid.values()), *nodes], float)
         self.angle, self.about_z, self.rotation = orientations(rigid, self.beams)
-        # the same as floats, for what is asked once for each point: numpy is slow with three numbers
+        # the same as floats, for what is asked of each point: numpy is slow with three numbers
         self.centres = [(x, y, z) for x, y, z in self.at_start.tolist()]
         self.turns = self.rotation.tolist()
         self.flat = all(spec.drawn_in is None or spec.drawn_in.flat for spec in rigid.values())

@@ -91,6 +91,11 @@ def dependent_rows(J: Array, scale: Array, order: list[int], least: float = DEPE
     rows = of_length_one(J, scale)
     if least < PLAIN and plainly_independent(rows[order]):
         return set()
+    return one_by_one(rows, order, least)
+
+
+def one_by_one(rows: Array, order: list[int], least: float = DEPENDENT) -> set[int]:
+    """The same of rows of length one, without a look at whether there are any."""
     basis, rank = np.zeros((len(order), rows.shape[1])), 0
     found = set()
     for k in order:
