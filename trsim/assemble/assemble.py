@@ -75,11 +75,12 @@ def assemble(
     columns: list[Column] = []
     shown: tuple[Section, ...] = ()
     if drives is None and not stiff:  # nobody asks for channels of a start
-        model, columns = layout(scenario, model, instances, at.switches)
+        fields, columns = layout(scenario, model, instances, at.switches)
         at.switches = replace(at.switches, silent=columns_of_forces(columns, instances))
-        model = model.replaced(silent=silent(instances, at.switches))
+        fields["silent"] = silent(instances, at.switches)
         waves = swinging(at, instances, at.waves + at.shown)
-        model, shown = sections(scenario, model, instances, columns, waves)
+        of_sections, shown = sections(scenario, fields["heard"], instances, columns, waves)
+        model = model.replaced(**fields, **of_sections)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(look, chosen, planar)
     if drives is None and not ideal:
@@ -185,8 +186,8 @@ def pack(  # type: ignore[no-untyped-def]
         if not section:  # made from a key of the scenario
             made = elements.load(key).of_scenario(scenario, bodies)
             wanted += [(key, section, name, spec) for name, spec in made]
-    order = list(elements.ELEMENTS)
-    wanted.sort(key=lambda item: order.index(item[0]))
+    order = {key: n for n, key in enumerate(elements.ELEMENTS)}
+    wanted.sort(key=lambda item: order[item[0]])
     kinds = {key: elements.load(key) for key, *_ in wanted}
     at = Addresses(scenario, {(s, n): kinds[key] for key, s, n, _ in wanted}, bodies)
     at.of_start = bool(ideal) or stiff or drives is not None
@@ -205,12 +206,13 @@ def pack(  # type: ignore[no-untyped-def]
         for own, packed in rows.items():
             instances.append(Instance(section, own, kinds[key], packed, acts))
             at.instances[section, own] = instances[-1]
-        place = scenario.place((section, name))
-        line = f"{place.show()}: " if place else ""
         at.packed_functions[known:] = [
             f._replace(name=f"{section}.{name}.{f.name}") for f in at.packed_functions[known:]
         ]
-        at.notes[told:] = [f"{line}{section}.{name}.{note}" for note in at.notes[told:]]
+        if len(at.notes) > told:
+            place = scenario.place((section, name))
+            line = f"{place.show()}: " if place else ""
+            at.notes[told:] = [f"{line}{section}.{name}.{note}" for note in at.notes[told:]]
     at.switches = switches(scenario, at, instances) if drives is None else Switches()
     if at.end is not None:
         at.jumped = find_jumps(at, instances)
@@ -221,10 +223,11 @@ def pack(  # type: ignore[no-untyped-def]
             at.coordinate(own)
     # a joint learns its coordinate only after everybody who asks for it was packed
     for n, instance in enumerate(instances):
-        if instance.section == "joints":
+        if instance.section == "joints" and instance.element.coordinates:
             con = [*instance.row.con]
             for k, name in enumerate(of_joint(instance.name, scenario.joints)):
                 if name in at.coordinates:
                     con[column_of(k, len(instance.element.rows))] = at.coordinates[name].entry
-            instances[n] = replace(instance, row=replace(instance.row, con=tuple(con)))
+            if (*con,) != instance.row.con:
+                instances[n] = replace(instance, row=instance.row.with_con(con))
     return at, instances

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
+from functools import cache
 from itertools import islice
 from os import PathLike
 from pathlib import Path
@@ -252,6 +253,7 @@ def _unit_hint(spec: type[Spec] | None, below: tuple) -> str:
     return units_hint(unit.units) if unit else ""
 
 
+@cache
 def unit_of(spec: type[Spec] | None, key: Any) -> Unit | None:
     """The unit of a field, wherever it stands in the annotation."""
     field = spec.model_fields.get(key) if spec else None
