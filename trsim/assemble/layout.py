@@ -171,19 +171,22 @@ def compared(columns: list[Column], told: set[str], size: float) -> dict[str, An
     least: list[float] = []
     shared: list[int] = []
 
+    by_unit = dict.fromkeys(ALONG, size) | {"N*m": 1.0 / size}
+
     def of_kind(column: Column) -> int:
         return units.setdefault(ALONG.get(column.unit, column.unit), len(units))
 
     def lever(column: Column) -> float:
-        return {"N*m": 1.0 / size}.get(column.unit, size) if column.unit in ALONG else 1.0
+        return by_unit.get(column.unit, 1.0)
 
     for column in columns:
-        sought = column.name.split(".")[0] in told and not column.for_points
-        kin += [of_kind(column) if sought else -1] * column.size
-        levers += [lever(column)] * column.size
-        least += [column.least] * column.size
+        number = column.size
+        sought = not column.for_points and column.name.partition(".")[0] in told
+        kin += [of_kind(column) if sought else -1] * number
+        levers += [lever(column)] * number
+        least += [column.least] * number
         if column.unit in ("N", "N*m"):
-            shared += range(column.start, column.start + column.size)
+            shared += range(column.start, column.start + number)
     vectors = [c for c in columns if is_vector(c)]
     # their numbers stand already: each has a column of the same unit
     kin += [kin[column.start] for column in vectors]
@@ -208,6 +211,5 @@ def compared(columns: list[Column], told: set[str], size: float) -> dict[str, An
 
 def is_vector(column: Column) -> bool:
     """Whether the extremes of a channel are those of its magnitude as well."""
-    return (
-        column.size == 3 and column.name.rpartition(".")[2].startswith("reaction") and column.wanted
-    )
+    of_rows = column.size == 3 and column.wanted
+    return of_rows and column.name.rpartition(".")[2].startswith("reaction")

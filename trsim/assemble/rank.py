@@ -12,6 +12,8 @@ eigenvalues of G by some 1e-15, far below what is asked for.  Only where the pro
 are looked at one by one, or by singular values, at a cost that grows with the cube of their number.
 """
 
+from math import sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -102,7 +104,7 @@ def one_by_one(rows: Array, order: list[int], least: float = DEPENDENT) -> set[i
         row = rows[k]
         for _ in range(2):
             row = row - (basis[:rank] @ row) @ basis[:rank]
-        left = np.linalg.norm(row)
+        left = sqrt(row.dot(row))
         if left < least:
             found.add(k)
         else:

@@ -156,8 +156,9 @@ class Channel(NamedTuple):
 
     def on(self, own: str) -> "Channel":
         """The same channel in that unit."""
-        unit = self.unit_on(own)
-        return self if unit == self.unit else self._replace(unit=unit)
+        if "coordinate" not in self.unit and self.unit != "drive":
+            return self
+        return self._replace(unit=self.unit_on(own))
 
 
 # what every joint with constraint rows records
