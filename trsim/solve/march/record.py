@@ -394,8 +394,9 @@ def zeros(record: type[Packed], model: Model, sizes: Mapping[str, int]) -> dict[
     A name in it is one of `sizes`, or a number of the model, or a table of it, then its length.
     """
 
-    known: dict[int | str, int] = dict(sizes)
-    shapes = shaped(record)
+    known: dict[Any, int] = {**sizes}
+    of_kind: Any = record
+    shapes = shaped(of_kind)
     for k in {k for _, shape, _ in shapes for k in shape} - known.keys():
         found = k if isinstance(k, int) else getattr(model, k)
         known[k] = found if isinstance(found, int) else len(found)
@@ -403,7 +404,7 @@ def zeros(record: type[Packed], model: Model, sizes: Mapping[str, int]) -> dict[
 
 
 @cache
-def shaped(record: type[Packed]) -> list[tuple[str, Shape, Any]]:
+def shaped(record: Any) -> list[tuple[str, Shape, Any]]:
     """The fields of a record that begin as zeros: their shapes and what they hold."""
     kinds = dict(record.kind.fields)
     found = [(name, shape) for name, shape in vars(record).items() if isinstance(shape, Shape)]
