@@ -129,11 +129,11 @@ def nearest(
     check_rates(ideal, rates, [g * scale for g, _ in asked], bound * scale, v / scale)
     if ideal.beams or not len(J):
         return np.asarray(v)
-    rows, moving = list(range(model.m + len(model.redundant))), moves(model, planar)
-    alone = of_length_one(bound[:, moving], scale[moving])
+    rows, there = list(range(model.m + len(model.redundant))), moves(model, planar)
+    alone = of_length_one(bound[:, there], scale[there])
     if not len(model.redundant) and plainly_independent(alone):
         return np.asarray(v)  # without self-stresses every velocity goes on
-    branches = Branches(model, y_ideal, rows, J[model.m :], moving, C)
+    branches = Branches(model, y_ideal, rows, J[model.m :], there, C)
     return branches.onward(np.asarray(v))
 
 
