@@ -207,10 +207,10 @@ def point(*units: str, named: bool = True) -> Any:
 def direction(v: Iterable[float]) -> tuple[float, ...]:
     """The unit vector along v, which is not zero; no square vanishes."""
     v = tuple(v)
-    exponent = math.frexp(max(map(abs, v)))[1]
-    v = tuple(math.ldexp(c, -exponent) for c in v)
-    length = math.sqrt(sum(c * c for c in v))
-    return tuple(c / length for c in v)
+    away = -math.frexp(max(map(abs, v)))[1]
+    near_one = [math.ldexp(c, away) for c in v]
+    length = math.sqrt(sum([c * c for c in near_one]))
+    return tuple([c / length for c in near_one])
 
 
 def _true_or_false(value: Any) -> Any:

@@ -284,7 +284,7 @@ def test_what_stands_for_a_mass_is_asked_for_by_light_bodies_only(rod, monkeypat
     asked = []
     monkeypatch.setattr(
         "trsim.assemble.tables.masses_and_arms",
-        lambda at: asked.append(at) or masses_and_arms(at),
+        lambda at, sizes: asked.append(at) or masses_and_arms(at, sizes),
     )
     built(ENGINE.format(rod, PINS, "method: dop853"))
     assert bool(asked) == (rod == ROD)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.elements.contract import compiled
-from trsim.kernels.packed import A1, C1, C2, F8, I1, I8, Packed, f8
+from trsim.kernels.packed import A1, A2, C1, C2, F8, I1, I8, Packed, f8
 from trsim.kernels.signatures import float64, void
 
 
@@ -30,6 +30,17 @@ class Waves(Packed):
 
     A: C2
     x: C1
+
+
+class Table(Clock):
+    """With an array of zeros."""
+
+    cells: A2
+
+
+@compiled(void(Table.kind))
+def filled(r):
+    r.cells[1, 2] = 7.0
 
 
 @compiled(void(Waves.kind, C1))
@@ -101,6 +112,25 @@ def test_those_of_a_record_made_of_another():
     assert not hasattr(other, "rings")
     with pytest.raises(TypeError, match="clock: 2 numbers instead of 3"):
         fresh(Alarm, clock=other.clock)
+
+
+def test_arrays_of_zeros_are_those_that_compiled_code_has():
+    """Seen before it writes or only after that, in the record itself or in one made of it."""
+    r = Table(None, {"cells": (2, 3)}, y=np.zeros(1), end=1.0)
+    before, other = Table(r), Table(r, end=2.0)
+    assert before.cells.tolist() == [[0.0] * 3] * 2
+    filled(r)
+    assert r.cells[1, 2] == before.cells[1, 2] == other.cells[1, 2] == 7.0
+    assert r.cells is r.cells and other.arrays().keys() == {"clock", "count", "y", "cells"}
+    alone = Table(r, {"cells": (3, 3)})
+    assert alone.cells.shape == (3, 3) and not alone.cells.any()
+    assert not hasattr(r, "columns")
+
+
+@pytest.mark.parametrize("shape", [(6,), (2, 3, 1)])
+def test_arrays_of_zeros_have_their_dimensions(shape):
+    with pytest.raises(TypeError, match=f"cells: {len(shape)} dimensions instead of 2"):
+        Table(None, {"cells": shape}, y=np.zeros(1), end=1.0)
 
 
 def test_complex_arrays():

@@ -14,6 +14,7 @@ from trsim.assemble.layout import columns_of_forces, layout
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
 from trsim.assemble.planar import Planarity, listed, planarity
+from trsim.assemble.reduce import Drawn
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
@@ -28,7 +29,7 @@ from trsim.assemble.rows import (
 from trsim.assemble.sections import sections
 from trsim.assemble.stages import Choice, Stages, silent
 from trsim.assemble.switches import SECTION, Switches, locks, parks, switches
-from trsim.assemble.tables import drawn, extent
+from trsim.assemble.tables import drawn
 from trsim.assemble.torsion import check_torsion
 from trsim.assemble.waves import swinging
 from trsim.elements.contract import Pair
@@ -55,33 +56,33 @@ def assemble(
     at, instances = pack(scenario, ideal, drives, coordinates, stiff)
     rows = all_rows(instances)
     parts = Parts.of(at, instances)
-    full, y6 = as_drawn(parts, rows)  # one workspace for all
-    verdict = (
-        planarity(scenario, full, y6, at, instances, rows) if planar is None else Planarity(planar)
-    )
+    look = Drawn.of(*as_drawn(parts, rows), rows)  # one workspace for all
+    verdict = planarity(scenario, look, at, instances) if planar is None else Planarity(planar)
     planar = verdict.planar
     check_inertias(at, planar, listed(verdict.reasons))
     if not planar:
         check_space(at, instances)
         if at.beams and drives is None and not ideal:  # of a start the run has said so
-            check_torsion(full, y6, at, instances, rows)
-    kept, found = choose_rows(full, y6, instances, planar, rows)
+            check_torsion(look, at, instances)
+    chosen = choose_rows(look, instances, planar)
+    kept, found = chosen.kept, chosen.found
     if drives is None and not ideal:  # of a start clearances may be left out
-        check_shaky(full, y6, instances, planar, rows, found)
+        check_shaky(look, instances, planar, chosen)
     d = 3 if planar else 6
-    own = hubs(full, y6, rows, kept, planar, spans(at))
+    own = hubs(look, kept, planar, spans(at))
     model = build(parts, kept, d, own, dropped(rows, found))
     y0 = drawn(at, d)
     columns: list[Column] = []
     shown: tuple[Section, ...] = ()
     if drives is None and not stiff:  # nobody asks for channels of a start
-        model, columns = layout(scenario, model, instances, at.switches)
+        fields, columns = layout(scenario, model, instances, at.switches)
         at.switches = replace(at.switches, silent=columns_of_forces(columns, instances))
-        model = model.replaced(silent=silent(instances, at.switches))
+        fields["silent"] = silent(instances, at.switches)
         waves = swinging(at, instances, at.waves + at.shown)
-        model, shown = sections(scenario, model, instances, columns, waves)
+        of_sections, shown = sections(scenario, fields["heard"], instances, columns, waves)
+        model = model.replaced(**fields, **of_sections)
     names = [f"{r.element}.{r.axis}" for r in rows]
-    unique, not_unique = reactions(full, y6, planar)
+    unique, not_unique = reactions(look, chosen, planar)
     if drives is None and not ideal:
         check_pressed(instances, kept, planar)
         check_rubbing(instances, rows, not_unique, found)
@@ -124,16 +125,15 @@ def stages(at: Addresses, instances: list[Instance], first: Choice, planar: bool
 
     def built(instances: list[Instance], rows: list[RowName]) -> Choice:
         parts = Parts.of(at, instances)
-        full, y6 = as_drawn(parts, rows)
-        kept, found = choose_rows(full, y6, instances, planar, rows)
-        check_rubbing(instances, rows, reactions(full, y6, planar)[1], found)
-        own, left = hubs(full, y6, rows, kept, planar, spans(at)), dropped(rows, found)
-        return Choice(build(parts, kept, d, own, left), kept, left)
+        look = Drawn.of(*as_drawn(parts, rows), rows)
+        chosen = choose_rows(look, instances, planar)
+        check_rubbing(instances, rows, reactions(look, chosen, planar)[1], chosen.found)
+        own, left = hubs(look, chosen.kept, planar, spans(at)), dropped(rows, chosen.found)
+        return Choice(build(parts, chosen.kept, d, own, left), chosen.kept, left)
 
     def rebuilt(instances: list[Instance], kept: list[RowName], left: list[RowName]) -> Model:
         parts, rows = Parts.of(at, instances), [*kept, *left]
-        full, y6 = as_drawn(parts, rows)
-        own = hubs(full, y6, rows, kept, planar, spans(at))
+        own = hubs(Drawn.of(*as_drawn(parts, rows), rows), kept, planar, spans(at))
         return build(parts, kept, d, own, left)
 
     angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}
@@ -186,8 +186,8 @@ def pack(  # type: ignore[no-untyped-def]
         if not section:  # made from a key of the scenario
             made = elements.load(key).of_scenario(scenario, bodies)
             wanted += [(key, section, name, spec) for name, spec in made]
-    order = list(elements.ELEMENTS)
-    wanted.sort(key=lambda item: order.index(item[0]))
+    order = {key: n for n, key in enumerate(elements.ELEMENTS)}
+    wanted.sort(key=lambda item: order[item[0]])
     kinds = {key: elements.load(key) for key, *_ in wanted}
     at = Addresses(scenario, {(s, n): kinds[key] for key, s, n, _ in wanted}, bodies)
     at.of_start = bool(ideal) or stiff or drives is not None
@@ -206,15 +206,16 @@ def pack(  # type: ignore[no-untyped-def]
         for own, packed in rows.items():
             instances.append(Instance(section, own, kinds[key], packed, acts))
             at.instances[section, own] = instances[-1]
-        place = scenario.place((section, name))
-        line = f"{place.show()}: " if place else ""
         at.packed_functions[known:] = [
             f._replace(name=f"{section}.{name}.{f.name}") for f in at.packed_functions[known:]
         ]
-        at.notes[told:] = [f"{line}{section}.{name}.{note}" for note in at.notes[told:]]
+        if len(at.notes) > told:
+            place = scenario.place((section, name))
+            line = f"{place.show()}: " if place else ""
+            at.notes[told:] = [f"{line}{section}.{name}.{note}" for note in at.notes[told:]]
     at.switches = switches(scenario, at, instances) if drives is None else Switches()
     if at.end is not None:
-        at.jumped = find_jumps(at, instances, extent(at))
+        at.jumped = find_jumps(at, instances)
     if at.jumped and at.switches.jumps < 0:
         at.switches = replace(at.switches, jumps=at.state(0.0))
     for name in coordinates:
@@ -222,10 +223,11 @@ def pack(  # type: ignore[no-untyped-def]
             at.coordinate(own)
     # a joint learns its coordinate only after everybody who asks for it was packed
     for n, instance in enumerate(instances):
-        if instance.section == "joints":
+        if instance.section == "joints" and instance.element.coordinates:
             con = [*instance.row.con]
             for k, name in enumerate(of_joint(instance.name, scenario.joints)):
                 if name in at.coordinates:
                     con[column_of(k, len(instance.element.rows))] = at.coordinates[name].entry
-            instances[n] = replace(instance, row=replace(instance.row, con=tuple(con)))
+            if (*con,) != instance.row.con:
+                instances[n] = replace(instance, row=instance.row.with_con(con))
     return at, instances

@@ -26,14 +26,14 @@ from trsim.assemble.poles import poles
 from trsim.assemble.projection import on_rows, poses_and_rows, project_positions
 from trsim.assemble.rubbing import rubbing, rubs_with
 from trsim.assemble.rubbing import table as rubbing_table
+from trsim.assemble.sizes import Sizes
 from trsim.assemble.tables import (
+    Masses,
     contact_numbers,
     drawn,
     eccentricity,
-    extent,
     judged,
     kernels,
-    levers,
     lone,
     masses,
     norm,
@@ -46,8 +46,10 @@ from trsim.assemble.tables import (
 )
 from trsim.assemble.travel import travels
 from trsim.assemble.waves import pulsed, swinging
-from trsim.elements.contract import N_BOOK
+from trsim.elements.contract import N_BOOK, PHASE, UNLOCATED
 from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, Scene, scene
+
+NONE_OF_THEM = np.zeros(0, np.int64)
 
 
 class Parts(NamedTuple):
@@ -56,11 +58,13 @@ class Parts(NamedTuple):
 
     at: Addresses
     instances: list[Instance]
+    sizes: Sizes
     shared: dict[str, Any]  # fields of Model
 
     @classmethod
     def of(cls, at: Addresses, instances: list[Instance]) -> Parts:
-        solver, size = at.scenario.solver, extent(at)
+        solver, sizes = at.scenario.solver, Sizes.of(at)
+        size = sizes.whole
         contacts = [e for e, i in enumerate(instances) if i.row.contact is not None]
         of_contacts = [i.row.contact for i in instances if i.row.contact is not None]
         touching = [instances[e] for e in contacts]
@@ -112,7 +116,7 @@ class Parts(NamedTuple):
             **pulsed(swinging(at, instances, at.waves)),
             "size": size,
         }
-        return cls(at, instances, shared)
+        return cls(at, instances, sizes, shared)
 
 
 def build(
@@ -127,17 +131,15 @@ def build(
     hubs: those of its solve; without them its rows can be looked at, and its equations not solved.
     redundant: rows that are looked at only.
     """
-    at, instances, shared = parts
+    at, instances, sizes, shared = parts
     n, size, contacts = len(at.frames), shared["size"], shared["contact"].tolist()
     con, par = tables(instances, [*rows, *redundant])
-    of = masses(at, d)
-    mass, inertia = of.mass, of.inertia
-    solver = at.scenario.solver
+    of = masses(at, d, sizes)
     d_node = 4 if d == 3 else 6
     n_nodes = n - at.n_rigid
     q_node, v_node = (3 if d == 3 else 7) * (at.n_rigid - 1), d * (at.n_rigid - 1)
     frames = [r.frames for r in rows]
-    arms = levers(at, lone(at, size, mass, inertia))
+    arms = sizes.levers(lone(at, sizes, of))
     scale_kind, scale = norm(at, d, size, arms)
     if len(of.light):
         unfit([at.owners[f] for f in of.light], of.light, [i.row for i in instances],
@@ -151,9 +153,9 @@ def build(
         q_node=q_node,
         v_node=v_node,
         m=len(rows),
-        unequal=int(unequal(at, mass, inertia, d)),
-        mass=mass,
-        inertia=inertia,
+        unequal=int(hubs is not None and unequal(at, of, sizes.arms, d)),
+        mass=of.mass,
+        inertia=of.inertia,
         mass_inverse=of.mass_inverse,
         inertia_inverse=of.inertia_inverse,
         light=of.light,
@@ -163,13 +165,10 @@ def build(
         par=par,
         **turns(at, d),
         **lines([*frames, *(r.frames for r in redundant)]),
-        **(no_pattern(len(frames), n) if hubs is None else pattern(frames, n, spans(at), hubs)),
+        **(looked_at(len(frames), n) if hubs is None else solved(at, instances, rows, hubs, of)),
         **watched_rows(instances, rows, redundant, size),
         shared_out=least_norm.address() if redundant else 0,
         **band_tables(list(at.beams.values()), frames, n),
-        near=near(solver, rows, spans(at)),
-        near_rows=0.0 if len(of.light) else near_rows(solver, rows, spans(at)),
-        looped=looped(instances, rows, spans(at)),
         scale_kind=scale_kind,
         scale=scale,
         contact_par=contact_numbers(at, instances, contacts, arms),
@@ -177,10 +176,29 @@ def build(
     )
 
 
+def looked_at(m: int, n: int) -> dict[str, Any]:
+    """What tells a model how it is solved, of one whose m rows are only looked at."""
+    return {**no_pattern(m, n), "near": 0.0, "near_rows": 0.0, "looped": NONE_OF_THEM}
+
+
+def solved(
+    at: Addresses, instances: list[Instance], rows: list[RowName], hubs: Hubs, of: Masses
+) -> dict[str, Any]:
+    """The same of one that is."""
+    solver, bars = at.scenario.solver, spans(at)
+    return {
+        **pattern([r.frames for r in rows], len(at.frames), bars, hubs),
+        "near": near(solver, rows, bars),
+        "near_rows": 0.0 if len(of.light) else near_rows(solver, rows, bars),
+        "looped": looped(instances, rows, bars),
+    }
+
+
 def as_drawn(parts: Parts, rows: list[RowName]) -> tuple[Scene, NDArray[np.float64]]:
     """The scene with some rows in space, its angles on the turns of the drawing (from others a row
     that relates angles is far from closed), and its state."""
     full = scene(build(parts, rows, 6))
+    full.mem[:, PHASE] = UNLOCATED
     for x in parts.at.coordinates.values():
         full.branch[x.entry] = x.drawn
     return full, drawn(parts.at, 6)

@@ -8,6 +8,7 @@ Householder's triangles with exchange of columns stand for singular values: the 
 diagonal, which falls [GolubVanLoan2013 5.4].  Sums of products are einsum's, which asks no BLAS.
 """
 
+from collections.abc import Sequence
 from math import copysign, sqrt
 
 import numpy as np
@@ -123,6 +124,26 @@ def length(v: Array) -> float:
 def product(A: Array, b: Array) -> Array:
     """A b, of a matrix with a vector or with a matrix."""
     return np.einsum("ij,j->i" if b.ndim == 1 else "ij,jk->ik", A, b)
+
+
+def turned(R: Sequence[Sequence[float]], v: Sequence[float]) -> tuple[float, float, float]:
+    """R v of a rotation, as rows of floats: to the bit what `product` gives, at a fifth of the time
+    that asking numpy for three numbers takes."""
+    x, y, z = v
+    (a, b, c), (d, e, f), (g, h, i) = R
+    # einsum begins with zero and adds the products of a row in pairs
+    return (
+        (0.0 + a * x + c * z) + b * y,
+        (0.0 + d * x + f * z) + e * y,
+        (0.0 + g * x + i * z) + h * y,
+    )
+
+
+def turned_back(R: Sequence[Sequence[float]], v: Sequence[float]) -> tuple[float, float, float]:
+    """R^T v, as `product` of the transposed gives it: column by column, one row after the other."""
+    x, y, z = v
+    (a, b, c), (d, e, f), (g, h, i) = R
+    return 0.0 + a * x + d * y + g * z, 0.0 + b * x + e * y + h * z, 0.0 + c * x + f * y + i * z
 
 
 def _triangle(B: Array, Q: Array) -> tuple[Array, Array, NDArray[np.int64]]:

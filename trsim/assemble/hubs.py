@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from trsim.assemble.instances import RowName
 from trsim.assemble.pattern import Hubs, Rows, structure
 from trsim.assemble.rank import dependent_rows, of_length_one, plainly_independent
-from trsim.assemble.reduce import jacobian, moves, weights
+from trsim.assemble.reduce import Drawn, moves, weights
 from trsim.elements.scene import Model
 
 Array = NDArray[np.float64]
@@ -25,22 +25,16 @@ TRIED = 16  # bodies
 LEAST = 1e-2  # of a row left after the others are taken out, hubs held: with less it comes later
 
 
-def hubs(
-    full: Model,
-    y6: Array,
-    rows: list[RowName],
-    kept: list[RowName],
-    planar: bool,
-    beams: list[tuple[int, int]],
-) -> Hubs:
-    """The hubs of a mechanism.  rows: those of `full`; kept: of these the ones in the solve."""
+def hubs(drawn: Drawn, kept: list[RowName], planar: bool, beams: list[tuple[int, int]]) -> Hubs:
+    """The hubs of a mechanism.  kept: of the rows as drawn those in the solve."""
+    full = drawn.scene
     frames, d = [r.frames for r in kept], 3 if planar else 6
     count = Counter(f for named in frames for f in named if 0 < f < full.n_r)
     found, many = Hubs(), [f for f, n in count.most_common(TRIED) if n > MANY * d]
     if not many:
         return found
-    number = {row: k for k, row in enumerate(rows)}
-    J = jacobian(full, 0.0, y6)[2][[number[row] for row in kept]]
+    number = {row: k for k, row in enumerate(drawn.rows)}
+    J = drawn.J[[number[row] for row in kept]]
     least = structure(frames, full.n, beams).operations(found)
     for f in many:
         held = (*found.frames, f)

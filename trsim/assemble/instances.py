@@ -1,6 +1,7 @@
 """Elements of a scenario packed, and the names of their rows, columns and sections."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf
 from typing import Any, NamedTuple
 
@@ -59,12 +60,11 @@ class Instance:
         """The name that it has in its section of the scenario."""
         return self.name.partition(".")[0] if self.section == "forces" else self.name
 
-    @property
+    @cached_property
     def channels(self) -> tuple[Channel, ...]:
         """Its channels, each in its own unit."""
         found = self.element.channels if self.row.channels is None else self.row.channels
-        own = "rad" if self.row.turns else "m"
-        return tuple(channel._replace(unit=channel.unit_on(own)) for channel in found)
+        return tuple(channel.on("rad" if self.row.turns else "m") for channel in found)
 
     @property
     def named_by_rows(self) -> frozenset[int]:

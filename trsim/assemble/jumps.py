@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.sizes import Sizes
 from trsim.elements.contract import compiled
 from trsim.elements.prescribed import AnyDrive
 from trsim.errors import ScenarioError, some
@@ -87,7 +88,7 @@ def jumps_of(tab: Array, offset: int, instants: list[float], by_velocity: bool) 
     return jumps
 
 
-def find_jumps(at: Any, instances: list[Any], size: float) -> dict[int, Array]:
+def find_jumps(at: Any, instances: list[Any]) -> dict[int, Array]:
     """Jumps of the motions with corners, by their offset in tab.
 
     Raises ScenarioError where the place of a rigid drive jumps, whatever events may do before.
@@ -95,7 +96,9 @@ def find_jumps(at: Any, instances: list[Any], size: float) -> dict[int, Array]:
     found: dict[int, Array] = {}
     of = driven(at, instances)
     mine = [f for f in at.functions if f.offset in of and f.instants]
-    tab = np.array(at.tab) if mine else np.zeros(0)  # a copy: functions are held in it
+    if not mine:
+        return found
+    tab, size = np.array(at.tab), Sizes.of(at).whole  # a copy: functions are held in it
     for f in mine:
         drive = of[f.offset]
         instance, times = instances[drive.e], [0.0, *f.instants, f.end]

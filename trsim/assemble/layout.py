@@ -56,54 +56,57 @@ def all_names(instances: Iterable[Instance], jumps: int) -> list[str]:
 
 def layout(
     scenario: Any, model: Model, instances: list[Instance], switches: Switches
-) -> tuple[Model, list[Column]]:
-    """The model with its output tables filled, and the columns."""
+) -> tuple[dict[str, Any], list[Column]]:
+    """The fields of a model that tell of its outputs, and the columns."""
     patterns, shown = tuple(scenario.output.channels), points_of(scenario)
     columns: list[Column] = []
     wanted = model.wanted.copy()
     joints: list[tuple[int, ...]] = []
     width = 0
 
-    def asked(name: str) -> bool:
-        return is_asked(name, patterns)
+    def asked(names: list[str]) -> list[bool]:
+        return [is_asked(name, patterns) for name in names]
 
-    def needed(name: str) -> bool:
-        return asked(name) or name in shown
-
-    def add(name: str, channel: Channel, extra: bool = False) -> None:
+    def add(name: str, channel: Channel, wanted: bool, extra: bool = False) -> None:
         nonlocal width
         _, unit, meaning, size, least, turn = channel
-        columns.append(Column(name, unit, meaning, width, size, asked(name), extra, least, turn))
+        columns.append(Column(name, unit, meaning, width, size, wanted, extra, least, turn))
         width += size
 
     read: set[str] = set()  # sensors that formulas need which are needed
     for instance in reversed(instances):
         if instance.section == "sensors" and instance.row.reads:
             own = [f"{instance.name}.{c.name}".rstrip(".") for c in instance.channels]
-            if instance.name in read or any(map(needed, own)):
+            if instance.name in read or any(asked(own)) or not shown.isdisjoint(own):
                 read |= instance.row.reads
 
     for e, instance in enumerate(instances):
         channels = instance.channels
+        if not channels:
+            continue
         names = [f"{instance.name}.{c.name}" if c.name else instance.name for c in channels]
+        told = asked(names)
         # contacts are always measured: their peaks and steps are part of every result
-        anyway = any(map(asked, names)) or instance.row.contact
-        judged = instance.element.judged(instance.row)
-        needs = any(map(needed, names)) or (instance.section == "sensors" and instance.name in read)
-        if names and (anyway or judged or needs):
+        anyway = any(told) or instance.row.contact is not None
+        needs = not shown.isdisjoint(names) or (
+            instance.section == "sensors" and instance.name in read
+        )
+        if anyway or needs or instance.element.judged(instance.row):
             wanted[e] = width
-            for name, channel in zip(names, channels, strict=True):
-                add(name, channel, extra=not anyway)
+            for name, channel, one in zip(names, channels, told, strict=True):
+                add(name, channel, one, extra=not anyway)
     for e, instance in enumerate(instances):
-        names = [f"{instance.name}.{c.name}" for c in instance.element.reactions]
-        if any(map(needed, names)):
-            extra = not any(map(asked, names))
+        channels = instance.element.reactions
+        names = [f"{instance.name}.{c.name}" for c in channels]
+        told = asked(names)
+        if any(told) or not shown.isdisjoint(names):
             joints.append((e, FIRST_ROW, len(instance.element.rows), width))
-            for name, channel in zip(names, instance.element.reactions, strict=True):
-                add(name, channel, extra)
+            for name, channel, one in zip(names, channels, told, strict=True):
+                add(name, channel, one, extra=not any(told))
     energy = width
-    for name in energy_columns(model.jumps):
-        add(f"energy.{name}", Channel(name, "J", "energy book"))
+    book = energy_columns(model.jumps)
+    for name, one in zip(book, asked([f"energy.{name}" for name in book]), strict=True):
+        add(f"energy.{name}", Channel(name, "J", "energy book"), one)
     unused = [p for p in patterns if not any(matches(c.name, (p,)) for c in columns)]
     if unused:
         raise ScenarioError(
@@ -111,21 +114,21 @@ def layout(
             known(unused[0], all_names(instances, model.jumps)),
             ("output", "channels", patterns.index(unused[0])),
         )
-    filled = model.replaced(
-        wanted=wanted,
-        joint_out=np.array(joints, np.int64).reshape(-1, 4),
-        column_energy=energy,
-        n_out=width,
+    fields = {
+        "wanted": wanted,
+        "joint_out": np.array(joints, np.int64).reshape(-1, 4),
+        "column_energy": energy,
+        "n_out": width,
         **compared(columns, of_peaks(instances), model.size),
         **watched(columns, switches),
-    )
-    return filled, columns
+    }
+    return fields, columns
 
 
 def watched(columns: list[Column], switches: Switches) -> dict[str, Any]:
     """The columns that user events watch."""
     if all(event.kind != CHANNEL for event in switches.events):
-        return {}
+        return {"heard": np.zeros(0, np.int64), "hear": 0}
     there = {column.name: column.start for column in columns}
     found = []
     for event in switches.events:
@@ -164,37 +167,41 @@ def compared(columns: list[Column], told: set[str], size: float) -> dict[str, An
     """
     units: dict[str, int] = {}
     kin: list[int] = []
+    levers: list[float] = []
+    least: list[float] = []
+    shared: list[int] = []
 
-    def number(column: Column) -> int:
-        sought = column.name.split(".")[0] in told and not column.for_points
-        return of_kind(column) if sought else -1
+    by_unit = dict.fromkeys(ALONG, size) | {"N*m": 1.0 / size}
 
     def of_kind(column: Column) -> int:
         return units.setdefault(ALONG.get(column.unit, column.unit), len(units))
 
     def lever(column: Column) -> float:
-        return {"N*m": 1.0 / size}.get(column.unit, size) if column.unit in ALONG else 1.0
+        return by_unit.get(column.unit, 1.0)
 
     for column in columns:
-        kin += [number(column)] * column.size
+        number = column.size
+        sought = not column.for_points and column.name.partition(".")[0] in told
+        kin += [of_kind(column) if sought else -1] * number
+        levers += [lever(column)] * number
+        least += [column.least] * number
+        if column.unit in ("N", "N*m"):
+            shared += range(column.start, column.start + number)
     vectors = [c for c in columns if is_vector(c)]
-    kin += [number(column) for column in vectors]
+    # their numbers stand already: each has a column of the same unit
+    kin += [kin[column.start] for column in vectors]
     turns = [c for c in columns if c.turn]  # judged in any run: behind those that are told
     kin += [of_kind(column) for column in turns]
     vectors += turns
-    levers = [lever(column) for column in columns for _ in range(column.size)]
     levers += [lever(column) for column in vectors]
-    of_forces = [column for column in columns if column.unit in ("N", "N*m")]
-    shared = [column.start + k for column in of_forces for k in range(column.size)]
-    least = [column.least for column in columns for _ in range(column.size)]
     least += [0.0 for _ in vectors]
-    sought = [k for k, number in enumerate(kin) if number >= 0]
+    those = [k for k, number in enumerate(kin) if number >= 0]
     return {
         "vector": np.array([column.start for column in vectors], np.int64),
-        "sought": np.array(sought, np.int64),
-        "kin": np.array([kin[k] for k in sought], np.int64),
-        "lever": np.array([levers[k] for k in sought]),
-        "least": np.array([least[k] for k in sought]),
+        "sought": np.array(those, np.int64),
+        "kin": np.array([kin[k] for k in those], np.int64),
+        "lever": np.array([levers[k] for k in those]),
+        "least": np.array([least[k] for k in those]),
         "natural": np.array([NATURAL.get(unit, UNKNOWN) for unit in units], np.int64).reshape(
             -1, 3
         ),
@@ -204,6 +211,5 @@ def compared(columns: list[Column], told: set[str], size: float) -> dict[str, An
 
 def is_vector(column: Column) -> bool:
     """Whether the extremes of a channel are those of its magnitude as well."""
-    return (
-        column.size == 3 and column.name.rpartition(".")[2].startswith("reaction") and column.wanted
-    )
+    of_rows = column.size == 3 and column.wanted
+    return of_rows and column.name.rpartition(".")[2].startswith("reaction")

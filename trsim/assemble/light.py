@@ -45,12 +45,15 @@ LEAST = 1e-9  # of M + E: of a motion left free that has less the arithmetic kno
 
 def lacking(
     name: str, spec: Any, reference: Callable[[], tuple[float, float]], planar: bool
-) -> Array:
-    """E of a body: a mass, and an inertia (9) along its axes; all zero where it lacks nothing.
+) -> Array | None:
+    """E of a body: a mass, and an inertia (9) along its axes; None where it lacks nothing.
 
     reference: what stands for a mass of the mechanism, and an arm; asked for where it lacks one.
     Raises ModelError for a mass or a moment below zero.
     """
+    tensor, complete = spec.tensor
+    if spec.mass > 0.0 and plainly_heavy(tensor, planar or not complete):
+        return None
     found = np.zeros(10)
 
     def moment() -> float:
@@ -59,23 +62,31 @@ def lacking(
 
     if spec.mass == 0.0:
         found[0] = SHARE * reference()[0]
-    tensor, complete = spec.tensor
-    I = np.reshape(tensor, (3, 3))
     if planar or not complete:
         if tensor[8] < 0.0:
             raise below_zero(name)
         found[9] = moment() if tensor[8] == 0.0 else 0.0
         if not complete:
             found[[1, 5]] = found[9]
-        return found
-    values, axes = symmetric(I)
+        return found if found.any() else None
+    values, axes = symmetric(np.reshape(tensor, (3, 3)))
     none = NONE * max(float(values[-1]), 0.0)
     if values[0] < -none:
         raise below_zero(name)
     light = axes[:, values <= none]
     if light.shape[1]:
         found[1:] = (moment() * light @ light.T).ravel()
-    return found
+    return found if found.any() else None
+
+
+def plainly_heavy(tensor: tuple[float, ...], about_z: bool) -> bool:
+    """Whether a body has moments about its axes, or about z, and the former are principal ones."""
+    if about_z:
+        return tensor[8] > 0.0
+    if tensor[1] or tensor[2] or tensor[5]:
+        return False
+    moments = tensor[::4]
+    return min(moments) > NONE * max(moments)
 
 
 def unfit(names: list[str], frames: NDArray[np.int64], rows: list[Any], rubs: bool) -> None:

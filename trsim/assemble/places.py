@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trsim.assemble.asked import is_asked, points_of
-from trsim.assemble.dense import product
+from trsim.assemble.dense import product, turned_back
 from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.elements.contract import N_BOOK
@@ -70,6 +70,9 @@ class Places:
         nodes = [place for beam in self.beams.values() for place in beam.places]
         self.at_start = np.array([(0.0, 0.0, 0.0), *(s.at for s in rigid.values()), *nodes], float)
         self.angle, self.about_z, self.rotation = orientations(rigid, self.beams)
+        # the same as floats, for what is asked of each point: numpy is slow with three numbers
+        self.centres = [(x, y, z) for x, y, z in self.at_start.tolist()]
+        self.turns = self.rotation.tolist()
         self.flat = all(spec.drawn_in is None or spec.drawn_in.flat for spec in rigid.values())
         self.points: list[tuple[int, tuple[float, ...]]] = []  # for arms and the size
 
@@ -132,11 +135,12 @@ class Places:
 
     def centre(self, i: int) -> tuple[float, ...]:
         """Centre of mass as drawn."""
-        return tuple(self.at_start[i])
+        return self.centres[i]
 
     def local(self, i: int, place: tuple[float, ...]) -> tuple[float, ...]:
         """A world point as drawn, in the axes of a body from its centre of mass."""
-        s = tuple(product(self.rotation[i].T, np.array(place) - self.at_start[i]))
+        (x, y, z), (a, b, c) = place, self.centres[i]
+        s = turned_back(self.turns[i], (x - a, y - b, z - c))
         self.points.append((i, s))
         return s
 
@@ -146,7 +150,7 @@ class Places:
 
     def axes(self, i: int, direction: tuple[float, ...]) -> tuple[float, ...]:
         """A world direction as drawn, in the axes of a body."""
-        return tuple(product(self.rotation[i].T, np.array(direction)))
+        return turned_back(self.turns[i], direction)
 
     def drawn_angle(
         self, i: int, j: int, axis: tuple[float, ...], frame: Frame | None = None

@@ -15,7 +15,7 @@ The last two make a scene spatial where it can be: where all inertias are known.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,14 +24,15 @@ from numpy.typing import NDArray
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.equations import forces, poses
 from trsim.assemble.instances import Instance, RowName
-from trsim.assemble.reduce import displaced, jacobian, moves
-from trsim.elements.contract import PHASE, UNLOCATED
-from trsim.elements.scene import Model, scene
+from trsim.assemble.reduce import Drawn, displaced, jacobian, moves
+from trsim.elements.scene import Scene
 from trsim.errors import ModelError, some
 
 Array = NDArray[np.float64]
 
 NOTHING = 1e-9  # of a direction, of the mechanism's size, of the largest force
+HELD = 1e-8  # a singular value of rows that hold
+NEARBY = 2  # states that are looked at
 SHOWN = 3  # reasons in a message
 MOVES, TURNS, TELLS = "moves", "turns", "tells"
 
@@ -79,20 +80,17 @@ def listed(reasons: Iterable[Out]) -> str:
     return some(reasons, SHOWN, ", and {} more", "; ")
 
 
-def planarity(
-    scenario: Any, full: Model, y6: Array, at: Addresses, instances: list[Instance],
-    rows: list[RowName],
-) -> Planarity:  # fmt: skip
-    """full: the model with `rows`, which are those of the joints and drives as drawn.
+def planarity(scenario: Any, drawn: Drawn, at: Addresses, instances: list[Instance]) -> Planarity:
+    """drawn: with the rows of the joints and drives.
 
     Raises ModelError for `planar: true` of a scene whose bodies leave the plane.
     """
-    if scenario.planar is False or full.n == 1:
+    if scenario.planar is False or drawn.scene.n == 1:
         return Planarity(False)
-    reasons = reaching_out(full, y6, at, instances, rows)
+    near = in_plane_states(drawn)
+    reasons = reaching_out(drawn, near, at, instances)
     # what must hold is looked at around the drawing as well
-    states = (y6, *(in_plane_states(full, y6) if reasons else ()))
-    held = is_held(full, states, lasting(instances, at, rows))
+    held = is_held(drawn, near if reasons else (), lasting(instances, at, drawn.rows))
     kinds = {out.kind for out in reasons}
     if MOVES in kinds or (TURNS in kinds and not held):
         if scenario.planar:
@@ -109,13 +107,13 @@ def planarity(
 
 
 def reaching_out(
-    full: Model, y6: Array, at: Addresses, instances: list[Instance], rows: list[RowName]
+    drawn: Drawn, near: Sequence[Array], at: Addresses, instances: list[Instance]
 ) -> list[Out]:
-    """All that reaches out of the x-y plane."""
-    pushed = list(of_loads(full, y6))
+    """All that reaches out of the x-y plane.  near: `in_plane_states`."""
+    pushed = list(of_loads(drawn.scene, near))
     reasons = [*of_bodies(at), *of_beams(at)]
-    reasons += of_elements(at, instances, full.size, bool(pushed))
-    reasons += of_rows(full, y6, rows)
+    reasons += of_elements(at, instances, drawn.scene.size, bool(pushed))
+    reasons += of_rows(drawn, near)
     return reasons or pushed  # of what no element has told
 
 
@@ -218,17 +216,19 @@ def reaching(at: Addresses, reach: Any, size: float) -> Iterator[tuple[str, str]
 # --- what the numbers say ----------------------------------------------------------------------
 
 
-def in_plane_states(full: Model, y6: Array, number: int = 2) -> Iterator[Array]:
+def in_plane_states(drawn: Drawn) -> list[Array]:
     """States nearby, moved and moving in the plane only; always the same ones."""
+    full, found = drawn.scene, list[Array]()
     inside, n_v = moves(full, True), slice(full.n_q, full.n_q + full.n_v)
     rigid = np.arange(6 * (full.n - 1)) < 6 * (full.n_r - 1)
-    for k in range(number):
+    for k in range(NEARBY):
         dx, rates = scattered(k, inside.size)
         # beams stay straight: their elastic forces would hide all others
-        near = displaced(full, y6, np.where(inside & rigid, 0.05 * dx, 0.0))
+        near = displaced(full, drawn.y, np.where(inside & rigid, 0.05 * dx, 0.0))
         # in the plane the axes of the solve are the world's
         near[n_v][inside] = rates[inside]
-        yield near
+        found.append(near)
+    return found
 
 
 def scattered(k: int, n: int) -> Array:
@@ -241,12 +241,13 @@ def scattered(k: int, n: int) -> Array:
     return math.sqrt(12.0) * (np.mod(i * i * math.sqrt(2.0), 1.0) - 0.5).reshape(2, n)
 
 
-def of_rows(full: Model, y6: Array, rows: list[RowName]) -> list[Out]:
+def of_rows(drawn: Drawn, near: Sequence[Array]) -> list[Out]:
     """Rows that are neither in the plane nor across it, and those that drive across it."""
+    full, rows = drawn.scene, drawn.rows
     inside = moves(full, True)
     found: dict[Out, None] = {}
-    for near in in_plane_states(full, y6):
-        _, phi_t, J = jacobian(full, 0.0, near)
+    for y in near:
+        _, phi_t, J = jacobian(full, 0.0, y)
         within = np.abs(J[:, inside]).max(axis=1, initial=0.0) > NOTHING
         outside = np.abs(J[:, ~inside]).max(axis=1, initial=0.0) > NOTHING * max(1.0, full.size)
         for k in np.flatnonzero(within & outside).tolist():
@@ -257,13 +258,11 @@ def of_rows(full: Model, y6: Array, rows: list[RowName]) -> list[Out]:
     return list(found)
 
 
-def of_loads(full: Model, y6: Array) -> Iterator[Out]:
+def of_loads(w: Scene, near: Sequence[Array]) -> Iterator[Out]:
     """Forces and moments out of the plane, of all elements together."""
-    rigid = slice(1, full.n_r)
-    for near in in_plane_states(full, y6):
-        w = scene(full)
-        w.mem[:, PHASE] = UNLOCATED
-        poses(w, near)
+    rigid = slice(1, w.n_r)
+    for y in near:
+        poses(w, y)
         forces(w, 0.0)
         least = NOTHING * max(1.0, float(np.abs(w.F).max(initial=0.0)))
         if np.abs(w.F[1:, 2]).max(initial=0.0) > least:
@@ -281,14 +280,16 @@ def lasting(instances: list[Instance], at: Addresses, rows: list[RowName]) -> li
     return [k for k, key in enumerate(keys) if key not in switched]
 
 
-def is_held(full: Model, states: Iterable[Array], rows: list[int]) -> bool:
-    """Whether the given rows keep every rigid body in its plane at all of the states."""
+def is_held(drawn: Drawn, near: Sequence[Array], rows: list[int]) -> bool:
+    """Whether the given rows keep every rigid body in its plane as drawn and at all of the states
+    near it."""
+    full = drawn.scene
     rigid = np.arange(6 * (full.n - 1)) < 6 * (full.n_r - 1)
     across = ~moves(full, True) & rigid
     number = int(across.sum())
     if not rows:
         return number == 0
+    places = (drawn.J, *(jacobian(full, 0.0, y)[2] for y in near))
     return all(
-        np.linalg.matrix_rank(jacobian(full, 0.0, y)[2][rows][:, across], tol=1e-8) == number
-        for y in states
+        np.sum(np.linalg.svd(J[rows][:, across], compute_uv=False) > HELD) == number for J in places
     )

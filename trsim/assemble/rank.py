@@ -12,6 +12,8 @@ eigenvalues of G by some 1e-15, far below what is asked for.  Only where the pro
 are looked at one by one, or by singular values, at a cost that grows with the cube of their number.
 """
 
+from math import sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -91,13 +93,18 @@ def dependent_rows(J: Array, scale: Array, order: list[int], least: float = DEPE
     rows = of_length_one(J, scale)
     if least < PLAIN and plainly_independent(rows[order]):
         return set()
+    return one_by_one(rows, order, least)
+
+
+def one_by_one(rows: Array, order: list[int], least: float = DEPENDENT) -> set[int]:
+    """The same of rows of length one, without a look at whether there are any."""
     basis, rank = np.zeros((len(order), rows.shape[1])), 0
     found = set()
     for k in order:
         row = rows[k]
         for _ in range(2):
             row = row - (basis[:rank] @ row) @ basis[:rank]
-        left = np.linalg.norm(row)
+        left = sqrt(row.dot(row))
         if left < least:
             found.add(k)
         else:

@@ -4,15 +4,18 @@ Derivatives of rows are against world-axes rates, six of each moving frame: see 
 Which rows are redundant: redundant.py.  Whether motion stays in a plane: planar.py.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from math import tan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.dense import least_squares
 from trsim.assemble.equations import constraints, poses
+from trsim.assemble.instances import RowName
 from trsim.assemble.projection import move_all
 from trsim.elements.scene import Model, Scene, workspace
 
@@ -22,6 +25,21 @@ IN_PLANE = [0, 1, 5]  # of the six world-axes rates of a rigid body
 NODE_IN_PLANE = [0, 1, 3, 4]  # and of a node of a beam, see `world_rates`
 STEPS = 60  # of Newton's method
 INDEPENDENT = 1e-10  # of the largest row: what must be left of one to be independent of others
+
+
+class Drawn(NamedTuple):
+    """A scene with all its rows, as drawn, and what is asked of it again and again."""
+
+    scene: Scene
+    y: Array
+    rows: list[RowName]
+    phi_t: Array  # of the rows
+    J: Array  # against the world-axes rates
+    scale: Array  # `weights`
+
+    @classmethod
+    def of(cls, full: Scene, y: Array, rows: list[RowName]) -> Drawn:
+        return cls(full, y, rows, *jacobian(full, 0.0, y)[1:], weights(full))
 
 
 def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:

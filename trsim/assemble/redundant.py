@@ -33,15 +33,19 @@ class Dependence:
     everywhere: bool  # at all nearby positions: redundant; only as drawn: singular
 
 
-def dependences(model: Model, y: Array, keep: NDArray[np.bool_], order: list[int],
-                geometric: list[int]) -> list[Dependence]:  # fmt: skip
+def dependences(
+    model: Model, y: Array, keep: NDArray[np.bool_], order: list[int], geometric: list[int],
+    here: set[int] | None = None,
+) -> list[Dependence]:  # fmt: skip
     """Dependent rows as drawn, and whether they stay so at nearby consistent positions.
 
     keep: world-axes rates that there are; order: priority of the rows; geometric: the rows
-    positions must keep to when perturbed (all but the drives).
+    positions must keep to when perturbed (all but the drives); here: the dependent rows as drawn,
+    where they are known.
     """
     scale = weights(model)[keep]
-    here = dependent_rows(jacobian(model, 0.0, y)[2][:, keep], scale, order)
+    if here is None:
+        here = dependent_rows(jacobian(model, 0.0, y)[2][:, keep], scale, order)
     if not here:
         return []
     samples = [jacobian(model, 0.0, near)[2][:, keep] for near in nearby(model, y, keep, geometric)]

@@ -1,18 +1,20 @@
 """Which constraint rows are solved: those in the plane of a planar scene, no redundant ones."""
 
 from collections.abc import Collection
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.instances import Instance, RowName
-from trsim.assemble.rank import unique_reactions
-from trsim.assemble.reduce import (
-    jacobian,
-    moves,
-    weights,
+from trsim.assemble.rank import (
+    of_length_one,
+    one_by_one,
+    plainly_independent,
+    unique_reactions,
 )
+from trsim.assemble.reduce import Drawn, moves
 from trsim.assemble.redundant import Dependence, dependences
 from trsim.assemble.shaky import shaky
 from trsim.elements.contract import ends
@@ -45,6 +47,15 @@ def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowN
     return rows
 
 
+class Chosen(NamedTuple):
+    """Rows of the solve, and what was found of them."""
+
+    kept: list[RowName]
+    found: list[Dependence]
+    inside: list[int]  # rows with a part in what moves: those kept and redundant ones
+    plain: bool  # whether these are independent beyond doubt
+
+
 def in_solve(full: Model, J: Array, planar: bool) -> NDArray[np.bool_]:
     """Rows with a part in the plane; all of them in space."""
     if not planar:
@@ -52,28 +63,30 @@ def in_solve(full: Model, J: Array, planar: bool) -> NDArray[np.bool_]:
     return np.abs(J[:, moves(full, True)]).max(axis=1, initial=0.0) > 1e-9
 
 
-def reactions(full: Model, y6: Array, planar: bool) -> tuple[list[int], list[int]]:
+def reactions(drawn: Drawn, chosen: Chosen, planar: bool) -> tuple[list[int], list[int]]:
     """Rows of the solve whose reaction the motion determines, and those where it does not."""
-    J = jacobian(full, 0.0, y6)[2]
-    keep = moves(full, planar)
-    inside = np.flatnonzero(in_solve(full, J, planar))
-    unique = unique_reactions(J[:, keep][inside], weights(full)[keep])
+    if chosen.plain:
+        return chosen.inside, []
+    keep, inside = moves(drawn.scene, planar), np.array(chosen.inside, np.int64)
+    unique = unique_reactions(drawn.J[:, keep][inside], drawn.scale[keep])
     return inside[unique].tolist(), inside[~unique].tolist()
 
 
-def choose_rows(
-    full: Model, y6: Array, instances: list[Instance], planar: bool, rows: list[RowName]
-) -> tuple[list[RowName], list[Dependence]]:
+def choose_rows(drawn: Drawn, instances: list[Instance], planar: bool) -> Chosen:
     """Rows of the solve: in the plane where the scene is planar, the redundant ones dropped."""
-    _, _, J = jacobian(full, 0.0, y6)
+    full, y6, rows, J = drawn.scene, drawn.y, drawn.rows, drawn.J
     candidates = np.flatnonzero(in_solve(full, J, planar)).tolist()
     is_drive = [instances[r.instance].section in ("drives", "events") for r in rows]
     is_lock = [instances[r.instance].section == "events" for r in rows]
     # translations first: where a choice is left, moments go rather than forces; then locks, which
     # may hold what is held already, and drives last
     order = sorted(candidates, key=lambda k: (is_drive[k], not is_lock[k], rows[k].rotation, k))
+    keep = moves(full, planar)
+    R = of_length_one(J[:, keep], drawn.scale[keep])
+    if plainly_independent(R[order]):
+        return Chosen([rows[k] for k in candidates], [], candidates, True)
     geometric = [k for k in candidates if not is_drive[k]]
-    found = dependences(full, y6, moves(full, planar), order, geometric)
+    found = dependences(full, y6, keep, order, geometric, one_by_one(R, order))
     for f in found:
         if is_drive[f.row] and not is_lock[f.row] and f.everywhere:
             name = rows[f.row].element
@@ -83,19 +96,17 @@ def choose_rows(
                 ("drives", name),
             )
     redundant = {f.row for f in found if f.everywhere}
-    return [rows[k] for k in candidates if k not in redundant], found
+    return Chosen([rows[k] for k in candidates if k not in redundant], found, candidates, False)
 
 
-def check_shaky(
-    full: Model, y6: Array, instances: list[Instance], planar: bool, rows: list[RowName],
-    found: list[Dependence],
-) -> None:  # fmt: skip
+def check_shaky(drawn: Drawn, instances: list[Instance], planar: bool, chosen: Chosen) -> None:
     """Refuse joints that are proved to allow motions to first order only."""
-    if not found:
+    if not chosen.found:
         return
-    inside = np.flatnonzero(in_solve(full, jacobian(full, 0.0, y6)[2], planar)).tolist()
-    geometric = [k for k in inside if instances[rows[k].instance].section == "joints"]
-    told = shaky(full, y6, rows, geometric, {f.row for f in found if f.everywhere}, planar)
+    rows = drawn.rows
+    geometric = [k for k in chosen.inside if instances[rows[k].instance].section == "joints"]
+    redundant = {f.row for f in chosen.found if f.everywhere}
+    told = shaky(drawn.scene, drawn.y, rows, geometric, redundant, planar)
     if told is None:
         return
     names = dict.fromkeys(rows[k].element for k in told.rows)

@@ -4,10 +4,11 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trsim.assemble.instances import Column, Instance, Section
 from trsim.assemble.waves import Swinging, followed
-from trsim.elements.scene import COMPONENTS, Model
+from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS
 
@@ -21,10 +22,11 @@ SMOOTH = ("m", "m/s", "rad", "rad/s", "-")  # units of what loads move by its ac
 
 
 def sections(
-    scenario: Any, model: Model, instances: list[Instance], columns: list[Column],
+    scenario: Any, heard: NDArray[np.int64], instances: list[Instance], columns: list[Column],
     waves: Sequence[Swinging],
-) -> tuple[Model, tuple[Section, ...]]:  # fmt: skip
-    """The model with its sections filled in, and their names; waves: see waves.followed.
+) -> tuple[dict[str, Any], tuple[Section, ...]]:  # fmt: skip
+    """The fields of a model that tell of sections, and their names; heard: columns that user events
+    watch; waves: see waves.followed.
 
     Sections in a bearing whose clearance is 0 are left out: a sweep may well begin with an ideal
     joint.  Raises ScenarioError for channels and contacts that do not exist.
@@ -45,15 +47,14 @@ def sections(
         crosses = spec.crosses if spec.when else ""
         found.append(Section(name, spec.when or "", crosses, spec.every or 0.0, spec.at_onset or "",
                              spec.after, *spec.plot, *units))  # fmt: skip
-    heard = (c for c in columns for o in model.heard if c.start <= o < c.start + c.size)
-    swinging = any(not smooth(column, functions) for column in heard)
-    section = np.array(rows, np.int64).reshape(-1, N_SECTION)
-    filled = model.replaced(
-        section=section,
-        **followed(waves if swinging or np.any(section[:, WAVES]) else []),
-        section_at=np.array(at, float).reshape(-1, 2),
-    )
-    return filled, tuple(found)
+    watched = (c for o in heard.tolist() for c in columns if c.start <= o < c.start + c.size)
+    swinging = any(not smooth(column, functions) for column in watched)
+    fields = {
+        "section": np.array(rows, np.int64).reshape(-1, N_SECTION),
+        "section_at": np.array(at, float).reshape(-1, 2),
+        **followed(waves if swinging or any(row[WAVES] for row in rows) else []),
+    }
+    return fields, tuple(found)
 
 
 def smooth(column: Column, functions: set[str]) -> bool:

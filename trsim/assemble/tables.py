@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
-from trsim.assemble.dense import inverse, length, product
+from trsim.assemble.dense import inverse
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.light import lacking
 from trsim.assemble.orientation import quaternion
 from trsim.assemble.places import WOUND
+from trsim.assemble.sizes import Sizes
 from trsim.assemble.switches import BAND, CHANNEL, Switches
 from trsim.elements import scene as scales
 from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, ContactNumbers, Element
@@ -25,7 +26,7 @@ LIGHTEST, HEAVIEST = 1e-30, 1e30  # kg
 STATE_SCALES = {"angle": scales.ANGLE, "stroke": scales.LENGTH, "speed": scales.SPEED}
 VALUE_AT, BAND_AT = range(2)  # columns of `watch_at`
 UNEQUAL = 1e5  # with all else of one size S = J M^-1 J^T loses as many digits
-SMALLEST, LARGEST = 1e-12, 1e12  # m, radii of gyration and distances of a mechanism
+SMALLEST, LARGEST = 1e-12, 1e12  # m, radii of gyration
 ACTING = ("force", "energy")  # kernels of what acts on bodies
 STRIKE = "strike"  # kernel of impacts
 FARTHEST = 0.01  # of the mechanism with its anchors: the least that stands for the arm of a body
@@ -41,10 +42,9 @@ def tables(instances: list[Instance], rows: list[RowName]) -> tuple[NDArray[np.i
 
 def padded(rows: Sequence[Sequence[float]], rest: float, kind: type) -> Any:
     """A table of rows, as wide as the widest."""
-    table: Any = np.full((max(len(rows), 1), max(map(len, rows), default=1)), rest, kind)
-    for e, row in enumerate(rows):
-        table[e, : len(row)] = row
-    return table
+    width = max(map(len, rows), default=1)
+    table = [(*row, *(rest,) * (width - len(row))) for row in rows] or [(rest,) * width]
+    return np.array(table, kind)
 
 
 def watched_rows(
@@ -108,11 +108,11 @@ class Masses(NamedTuple):
     lacking: Array  # (n_light, 10)
 
 
-def masses(at: Addresses, d: int) -> Masses:
+def masses(at: Addresses, d: int, sizes: Sizes) -> Masses:
     """Those of all frames.  Raises ModelError for what no body has."""
     n = len(at.frames)
     light: dict[int, Array] = {}
-    stand_ins = cache(partial(masses_and_arms, at))  # asked for by light bodies only
+    stand_ins = cache(partial(masses_and_arms, at, sizes))  # asked for by light bodies only
     mass, inertia = np.zeros(n), np.zeros((n, 9))
     mass_inverse, inertia_inverse = np.zeros(n), np.zeros((n, 9))
     for beam in at.beams.values():
@@ -126,48 +126,58 @@ def masses(at: Addresses, d: int) -> Masses:
         if spec.mass != 0.0 and not LIGHTEST <= spec.mass <= HEAVIEST:
             raise ModelError(f"no body of a mechanism has a mass of {spec.mass:.3g} kg",
                              "check its unit", ("bodies", name, "mass"))  # fmt: skip
+        tensor, complete = spec.tensor
         more = lacking(name, spec, lambda f=f: stand_ins()[f], d == 3)
-        inertia[f], complete = spec.tensor
-        mass[f], inertia[f] = spec.mass + more[0], inertia[f] + more[1:]
-        known = inertia[f].reshape(3, 3)
-        mass_inverse[f] = 1.0 / mass[f]
-        if np.any(more):
-            light[f] = more
+        mass[f], inertia[f] = spec.mass, tensor
+        if more is None:
+            check_radius(name, spec.mass, tensor if complete else tensor[8:])
         else:
-            check_radius(name, spec.mass, known if complete else known[2:, 2:])
+            light[f] = more
+            mass[f] += more[0]
+            inertia[f] += more[1:]
+        mass_inverse[f] = 1.0 / mass[f]
         if d == 3:
             inertia_inverse[f, 8] = 1.0 / inertia[f, 8]
         elif complete:
-            inertia_inverse[f] = inverse(known).ravel()
+            inertia_inverse[f] = inverse(inertia[f].reshape(3, 3)).ravel()
         else:  # only for the look at the rows before planarity is known
             inertia_inverse[f, [0, 4, 8]] = 1.0 / inertia[f, 8]
+    inertia += 0.0  # no zero with a sign
     which, more = np.array(list(light), np.int64), np.array(list(light.values())).reshape(-1, 10)
     return Masses(mass, inertia, mass_inverse, inertia_inverse, which, more)
 
 
-def masses_and_arms(at: Addresses) -> list[tuple[float, float]]:
+def masses_and_arms(at: Addresses, sizes: Sizes) -> list[tuple[float, float]]:
     """Of every frame what stands for a mass of the mechanism, between its largest and its smallest,
     kg, and for an arm, m."""
     found = [one for name in at.members if (one := at.members[name].as_rigid().mass) > 0.0]
-    mean, size = sqrt(min(found)) * sqrt(max(found)) if found else 1.0, extent(at)
-    return [(mean, arm or size) for arm in levers(at, 0.0)]
+    mean = sqrt(min(found)) * sqrt(max(found)) if found else 1.0
+    return [(mean, arm or sizes.whole) for arm in sizes.arms]
 
 
-def unequal(at: Addresses, mass: Array, inertia: Array, d: int) -> bool:
+def unequal(at: Addresses, of: Masses, arms: list[float], d: int) -> bool:
     """Whether a body is far lighter than others, or far easier to turn than it is to move by its
     arms or to turn about another axis."""
     n = at.n_rigid
     if n < 2:
         return False
-    moments = inertia[1:n, 8:] if d == 3 else np.linalg.eigvalsh(inertia[1:n].reshape(-1, 3, 3))
-    swung = mass[1:n] * np.array(levers(at, 0.0)[1:n]) ** 2
-    turned = np.any(np.maximum(moments[:, -1], swung) > UNEQUAL * moments[:, 0])
-    return bool(turned or mass[1:n].max() > UNEQUAL * mass[1:n].min())
+    mass, inertia = of.mass[1:n], of.inertia[1:n]
+    moments = inertia[:, 8:] if d == 3 else np.linalg.eigvalsh(inertia.reshape(-1, 3, 3))
+    swung = mass * np.array(arms[1:n]) ** 2
+    turned = (np.maximum(moments[:, -1], swung) > UNEQUAL * moments[:, 0]).any()
+    return bool(turned or mass.max() > UNEQUAL * mass.min())
 
 
-def check_radius(name: str, mass: float, inertia: Array) -> None:
-    """Refuse inertias that turn into no number: sqrt(I / m) is a length of the body."""
-    for moment in np.linalg.eigvalsh(inertia).tolist():
+def check_radius(name: str, mass: float, inertia: tuple[float, ...]) -> None:
+    """Refuse inertias that turn into no number: sqrt(I / m) is a length of the body.
+
+    inertia: a tensor, row by row, or one moment.
+    """
+    if any(inertia[k] for k in (1, 2, 5) if k < len(inertia)):
+        moments = np.linalg.eigvalsh(np.reshape(inertia, (3, 3))).tolist()
+    else:
+        moments = sorted(inertia[::4])
+    for moment in moments:
         radius = sqrt(moment / mass)
         if not SMALLEST <= radius <= LARGEST:
             raise ModelError(
@@ -235,51 +245,16 @@ def turns(at: Addresses, d: int) -> dict[str, Any]:
     }
 
 
-def extent(at: Addresses) -> float:
-    """Size of the mechanism: the diagonal of the box around its points as drawn, m."""
-    # the origin is none of its points, unless something is joined to the ground there
-    corners = [*at.at_start[1:]] if len(at.at_start) > 1 else [at.at_start[0]]
-    corners += [at.at_start[i] + product(at.rotation[i], np.array(s)) for i, s in at.points]
-    far = np.max(np.abs(corners), axis=1)
-    worst = int(np.argmax(far))
-    if far[worst] > LARGEST:
-        frames = [*range(1, len(at.frames)), *(i for i, _ in at.points)]
-        name = at.owners[frames[worst]]
-        raise ModelError(
-            f"a point of '{name}' lies {far[worst]:.3g} m from the origin",
-            f"a mechanism of at most {LARGEST:g} m can be solved; check the units",
-            ("bodies", name) if name in at.scenario.bodies else ("joints",),
-        )
-    box = np.ptp(np.array(corners), axis=0)
-    size = length(box)
-    return size if size > 0.0 else 1.0
-
-
-def lone(at: Addresses, size: float, mass: Array, inertia: Array) -> float:
+def lone(at: Addresses, sizes: Sizes, of: Masses) -> float:
     """What stands for the arm of a body to which nothing is fixed away from its centre, m.
 
     How far bodies and what is fixed to them lie apart, or the largest radius of gyration.  Points
     of the ground do not count: a mass on a spring that is anchored far away does not move so far.
     """
-    corners = [*at.at_start[1:]]
-    corners += [
-        at.at_start[i] + product(at.rotation[i], np.array(s)) for i, s in at.points if i > 0
-    ]
-    apart = length(np.ptp(np.array(corners), axis=0)) if corners else 0.0
-    n = at.n_rigid
-    moments = inertia[1:n, [0, 4, 8]].max(axis=1, initial=0.0)
-    gyration = float(np.sqrt(moments / mass[1:n]).max(initial=0.0))
-    return min(size, max(apart, gyration, FARTHEST * size))
-
-
-def levers(at: Addresses, alone: float) -> list[float]:
-    """Largest arm of every frame; `alone` where nothing is fixed away from its centre, m."""
-    arms = [0.0] * len(at.frames)
-    for i, s in at.points:
-        arms[i] = max(arms[i], length(np.array(s)))
-    for beam in at.beams.values():
-        arms[beam.first : beam.first + beam.nodes] = [beam.whole] * beam.nodes
-    return [a if a > 0.0 else alone for a in arms]
+    part = slice(1, at.n_rigid)
+    bodies = zip(of.inertia[part, ::4].tolist(), of.mass[part].tolist(), strict=True)
+    gyration = max((sqrt(max(*moments, 0.0) / mass) for moments, mass in bodies), default=0.0)
+    return min(sizes.whole, max(sizes.apart, gyration, FARTHEST * sizes.whole))
 
 
 def norm(at: Addresses, d: int, size: float, arms: list[float]) -> tuple[NDArray[np.int64], Array]:

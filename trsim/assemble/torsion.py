@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
-from trsim.assemble.instances import Instance, RowName
-from trsim.assemble.planar import lasting, reaching_out
-from trsim.assemble.reduce import jacobian, weights
+from trsim.assemble.instances import Instance
+from trsim.assemble.planar import in_plane_states, lasting, reaching_out
+from trsim.assemble.reduce import Drawn
 from trsim.elements.scene import Model
 from trsim.errors import ModelError
 
@@ -43,21 +43,20 @@ class Holder(NamedTuple):
     body: int
 
 
-def check_torsion(
-    full: Model, y6: Array, at: Addresses, instances: list[Instance], rows: list[RowName]
-) -> None:
+def check_torsion(drawn: Drawn, at: Addresses, instances: list[Instance]) -> None:
     """Raises ModelError for a weld that only torsion of a bar would hold.
 
-    full: the model with `rows`, all those of joints and drives as drawn.
+    drawn: with all rows of joints and drives.
     """
+    full, rows = drawn.scene, drawn.rows
     bars = holders(at, instances)
     pairs = [pair for found in bars for pair in combinations(found, 2) if differ(*pair)]
-    if not pairs or not reaching_out(full, y6, at, instances, rows):
+    if not pairs or not reaching_out(drawn, in_plane_states(drawn), at, instances):
         return
     held = [k for k in lasting(instances, at, rows) if is_joint(instances[rows[k].instance])]
-    J = (jacobian(full, 0.0, y6)[2][held] * weights(full)).T
+    J = (drawn.J[held] * drawn.scale).T
     for a, b in pairs:
-        r = turn(full, a, b, np.array(at.tangent(a.node))) * weights(full)
+        r = turn(full, a, b, np.array(at.tangent(a.node))) * drawn.scale
         left = r - J @ np.linalg.lstsq(J, r, rcond=1e-10)[0] if held else r
         if np.linalg.norm(left) <= FREE * np.linalg.norm(r):
             continue

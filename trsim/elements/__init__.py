@@ -1,6 +1,7 @@
 """The elements: one line each.  The word in a scenario file is the name of the module."""
 
 from importlib import import_module
+from sys import modules
 from typing import TYPE_CHECKING
 
 from trsim.errors import ScenarioError, known
@@ -79,4 +80,5 @@ def load(word: str) -> "Element":
     """Import one element.  Raises ScenarioError for a word that is none."""
     if word not in ELEMENTS:
         raise ScenarioError(f"unknown type '{word}'", known(word, [w for w in ELEMENTS if w]))
-    return import_module(f"trsim.elements.{word}").ELEMENT
+    module = modules.get(name := f"trsim.elements.{word}")  # a lookup: this is asked all the time
+    return getattr(module, "ELEMENT", None) or import_module(name).ELEMENT

@@ -154,6 +154,12 @@ class Channel(NamedTuple):
         turning = {"drive": "N*m" if own == "rad" else "N"}
         return turning.get(self.unit, self.unit.replace("coordinate", own))
 
+    def on(self, own: str) -> "Channel":
+        """The same channel in that unit."""
+        if "coordinate" not in self.unit and self.unit != "drive":
+            return self
+        return self._replace(unit=self.unit_on(own))
+
 
 # what every joint with constraint rows records
 REACTIONS = (
@@ -257,6 +263,12 @@ class Row:
     # of what rubs, for a load of 1: stiffness and damping at rest, 1/m and s/m; the rate at which
     # bristles follow a speed of 1, 1/m
     grips: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def with_con(self, con: Iterable[int]) -> "Row":
+        """The same with other columns of con; `replace` asks for every field one by one."""
+        row = object.__new__(type(self))
+        vars(row).update(vars(self), con=tuple(con))
+        return row
 
     def frames(self, index: int) -> tuple[int, ...]:
         """The frames that a constraint row of it names, each once, in the order of its lines of J:

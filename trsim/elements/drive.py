@@ -101,7 +101,8 @@ def pack(name, spec, at):
     word = "velocity" if by_velocity else "position"
     rates = ("rad/s", "m/s") if by_velocity else ("rad", "m")
     at.check_unit(x.kind, *rates, "drives", name, word)
-    at.check_units(x.kind, Compliance, WITH_UNITS, "drives", name, "compliance")
+    if spec.compliance is not None:
+        at.check_units(x.kind, Compliance, WITH_UNITS, "drives", name, "compliance")
     motion = spec.velocity if by_velocity else spec.position
     wanted = rates[0 if x.kind == "angle" else 1]
     f = at.function(motion, word, time_only=True, wanted=wanted)

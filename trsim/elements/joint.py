@@ -1,7 +1,5 @@
 """What all joints share: two bodies, a point, an axis, and what follows from a list of rows."""
 
-from dataclasses import replace
-
 from trsim.elements.contract import Element, Reach, Row, Turning
 from trsim.elements.frames import at_both, between_points, points
 from trsim.elements.rows import COORDINATES, POINT, Axes, constraint_of, coordinate_of
@@ -106,7 +104,7 @@ def joint(key, spec, rows, coordinates=(), pack=pack, **other):
 
     def packed(name, spec, at):
         row = pack(name, spec, at)
-        return replace(row, con=(*row.con, *room))
+        return row.with_con((*row.con, *room))
 
     follows = {
         "meets": places == 3 or whole,

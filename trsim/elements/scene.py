@@ -254,7 +254,7 @@ def scene(model: Model) -> Scene:
 
     n, m, n_x, slots = model.n, model.m, len(model.column_start) - 1, len(model.slot_row)
     rows = m + len(model.redundant)
-    elements = int(np.sum(model.beam[:, 1] - 1))
+    elements = int(np.sum(model.beam[:, 1] - 1)) if len(model.beam) else 0
     loops = 1 if model.near_rows > 0.0 else 0
     waiting = min(m, DELAYED) if n_x > m else 0
     shared = len(model.redundant) if model.shared_out else 0
@@ -311,7 +311,7 @@ def scene(model: Model) -> Scene:
         status=np.zeros(9, np.int64),
         delayed=np.zeros(1 + waiting, np.int64),
     )
-    made.X[:, [3, 7, 11]] = 1.0
+    made.X[:, 3::4] = 1.0
     made.X[:, 2] = model.depth
     made.corner[...] = made.left[...] = -1.0
     return made

@@ -89,6 +89,8 @@ class Layout(type):
     """What a class of columns is: its fields have their places."""
 
     columns: dict[str, Column]
+    told: set[str]  # those that whoever packs the row gives
+    tables: list[str]  # where its columns are
 
     def __new__(cls, name: str, bases: tuple[type, ...], space: dict[str, Any], **_: str) -> Any:
         return super().__new__(cls, name, bases, space)
@@ -102,11 +104,8 @@ class Layout(type):
             there = (c.number for c in cls.columns.values() if c.table == table)
             cls.columns[field] = column._replace(table=table, at=sum(there))
             setattr(cls, field, cls.columns[field])
-
-    @property
-    def tables(cls) -> list[str]:
-        """Where its columns are."""
-        return list(dict.fromkeys(column.table for column in cls.columns.values()))
+        cls.told = {name for name, column in cls.columns.items() if column.packed}
+        cls.tables = list(dict.fromkeys(column.table for column in cls.columns.values()))
 
 
 class Columns(metaclass=Layout):
@@ -134,15 +133,18 @@ class Columns(metaclass=Layout):
     @classmethod
     def numbers(cls, like: Any = None, /, **values: Any) -> dict[str, list[Any]]:
         """A row of each table."""
-        told = {k for k, c in cls.columns.items() if c.packed}
-        values = {k: getattr(like, k) for k in told - values.keys() if hasattr(like, k)} | values
-        wrong, found = told ^ values.keys(), {table: list[Any]() for table in cls.tables}
-        for name, column in cls.columns.items() if not wrong else ():
-            value: Any = values.get(name, -1)
-            single = column.form == NUMBER or not column.packed
-            row = found[column.table]
-            row += (value,) * column.number if single else value
-            if column.number and len(row) != column.at + column.number:
+        if like is not None:
+            named = {name: getattr(like, name, None) for name in cls.told - values.keys()}
+            values |= {name: value for name, value in named.items() if value is not None}
+        wrong: set[str] = cls.told ^ values.keys()
+        found: dict[str, list[Any]] = {table: [] for table in cls.tables}
+        for name, (table, number, form, packed, first) in cls.columns.items() if not wrong else ():
+            row = found[table]
+            if form == NUMBER and packed:
+                row.append(values[name])
+            else:
+                row += values[name] if packed else (-1,) * number
+            if number and len(row) != first + number:
                 wrong.add(name)
         if wrong:
             raise TypeError(f"{cls.__qualname__}: fields {sorted(wrong)} are missing or wrong")

@@ -155,6 +155,9 @@ class Compiled(Lazy):
                 flat.append(value.address)
             elif dimensions == NUMBER:
                 flat.append(value)
+            elif dimensions == 1 and value.dtype.char in letters and value.ndim == 1:
+                size, each = len(value), value.itemsize
+                flat += (0, 0, size, each, _data(value), size, each)
             else:
                 flat += _array(value, dimensions, letters)
         result = returned()
@@ -197,21 +200,22 @@ def _parts(kind: Kind) -> list[Any]:
     return [ctypes.c_double if kind.dtype == "float64" else ctypes.c_int64]
 
 
+def _data(value: Any) -> int:
+    """The address of the first entry of an array."""
+    try:
+        return addressof(at(value))  # refused unless it is contiguous and may be written to
+    except TypeError:
+        if not value.flags.c_contiguous:
+            raise TypeError("an array must be contiguous") from None
+        return address(value)
+
+
 def _array(value: Any, dimensions: int, letters: str) -> tuple[int, ...]:
     """The parts of an array.  What an array is asked for costs more than most calls take."""
     kind, shape = value.dtype, value.shape
     if len(shape) != dimensions or kind.char not in letters:
         raise TypeError(f"wanted {dimensions} of {letters}, got {len(shape)} dimensions of {kind}")
-    try:
-        data = addressof(at(value))  # refused unless it is contiguous and may be written to
-    except TypeError:
-        if not value.flags.c_contiguous:
-            raise TypeError("an array must be contiguous") from None
-        data = address(value)
-    each = kind.itemsize
-    if dimensions == 1:
-        (size,) = shape
-        return 0, 0, size, each, data, size, each
+    data, each = _data(value), kind.itemsize
     if dimensions == 2:
         rows, columns = shape
         return 0, 0, rows * columns, each, data, rows, columns, each * columns, each

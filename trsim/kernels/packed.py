@@ -15,8 +15,9 @@ from __future__ import annotations
 
 import itertools
 import math
+from array import array
 from collections import Counter
-from ctypes import addressof
+from ctypes import addressof, c_double
 from functools import cache
 from operator import setitem
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -72,6 +73,8 @@ __all__ = [
 
 WORDS = 3  # per field
 LINE = 8  # words: where one array ends and the next begins, there is a new line of the cache
+EMPTY = c_double()
+NOWHERE = addressof(EMPTY)  # where arrays without entries are
 HOLDERS = {"F8": "clock", "I8": "count"}  # the arrays of numbers that change
 
 
@@ -86,6 +89,10 @@ class Packed:
     kind: Kind  # what signatures call it
     places: dict[str, int]  # of a field among the fields
     sizes: Counter[str]  # of the arrays that numbers which change are entries of
+    words: NDArray[np.int64]  # what compiled code reads
+    address: int  # where they begin
+    # arrays of zeros Python has not asked for: the piece they lie in, from where to where, shape
+    _zeros: dict[str, tuple[Any, int, int, tuple[int, ...]]]
 
     def __init_subclass__(cls) -> None:
         own = {k: v for k, v in vars(cls).get("__annotations__", {}).items() if k != "kind"}
@@ -112,72 +119,83 @@ class Packed:
         room: shapes of arrays of zeros, made in one piece: asking each for its address is slow."""
         import numpy as np
 
-        wrong = {*(room or {}), *values} - self.places.keys()
-        words = [0] * (WORDS * len(self.places))
+        places, own = self.places.keys(), vars(self)
+        words = array("q", bytes(8 * WORDS * len(places)))
+        own["_zeros"] = {}
+        wrong: Any = {*(room or ()), *values} - places
         if not wrong:
             if like is not None:
                 self._share(like, words)
             else:
                 values = {name: np.zeros(n) for name, n in self.sizes.items()} | values
-            self._make(room or {}, words)
+            if room:
+                self._make(room, words)
             self._take(values, words)
-            wrong = self.places.keys() - vars(self).keys()
+            if type(like) is not type(self):
+                wrong = places - own.keys() - self._zeros.keys()
         if wrong:
             raise TypeError(f"{type(self).__name__}: fields {sorted(wrong)} missing or unknown")
-        self.words = np.array(words, np.int64)
-        self.address = address(self.words)
+        own["words"] = np.frombuffer(words, np.int64)
+        own["address"] = address(words)
 
-    def _share(self, like: Packed, words: list[int]) -> None:
+    def __getattr__(self, name: str) -> Any:
+        """A view of an array of zeros, made when Python first asks for it, as it does for few."""
+        try:
+            piece, begin, end, shape = vars(self)["_zeros"][name]
+        except KeyError:
+            raise AttributeError(f"{type(self).__name__} has no '{name}'") from None
+        view = vars(self)[name] = piece[begin:end].reshape(shape)
+        return view
+
+    def _share(self, like: Packed, words: array[int]) -> None:
         """The first fields, as another record has them."""
-        number = min(len(self.places), len(like.places))
-        words[: WORDS * number] = like.words[: WORDS * number].tolist()
-        there = vars(like)
-        vars(self).update({name: there[name] for name in itertools.islice(self.places, number)})
+        number, own = min(len(self.places), len(like.places)), vars(self)
+        words[: WORDS * number] = array("q", like.words[: WORDS * number].tobytes())
+        if number == len(like.places):
+            own |= vars(like)
+            own["_zeros"] = {**like._zeros}
+            return
+        for name in itertools.islice(self.places, number):
+            own[name] = getattr(like, name)
 
-    def _make(self, room: dict[str, tuple[int, ...]], words: list[int]) -> None:
+    def _make(self, room: dict[str, tuple[int, ...]], words: array[int]) -> None:
         """Arrays of zeros."""
         import numpy as np
 
         sizes = [math.prod(shape) for shape in room.values()]
         ends = [0, *itertools.accumulate(LINE * -(-size // LINE) for size in sizes)]
-        piece = np.zeros(ends[-1])
         record: Any = type(self)
-        start, own, fields = address(piece), vars(self), _fields(record)
+        piece = np.zeros(ends[-1])
+        start, fields, own, zeros = address(piece), _fields(record), vars(self), self._zeros
         for (name, shape), size, begin in zip(room.items(), sizes, ends, strict=False):
-            field = fields[name]
-            _check(field, shape)
-            part, word = piece[begin : begin + size], field.word
-            own[name] = part if len(shape) == 1 else part.reshape(shape)
-            words[word] = start + 8 * begin
-            words[word + 1 : word + 1 + len(shape)] = shape
+            own.pop(name, None)
+            zeros[name] = piece, begin, begin + size, shape
+            _tell(words, fields[name], start + 8 * begin, shape)
 
-    def _take(self, values: dict[str, Any], words: list[int]) -> None:
+    def _take(self, values: dict[str, Any], words: array[int]) -> None:
         """Fields that are given."""
         import numpy as np
 
         record: Any = type(self)
-        own, fields = vars(self), _fields(record)
+        own, fields, reals = vars(self), _fields(record), memoryview(words).cast("B").cast("d")
         for name, value in values.items():
             field = fields[name]
-            word = field.word
             if field.dimensions:
                 try:  # as nearly all are what compiled code can work on
-                    start = addressof(at(value)) if value.dtype is field.dtype else 0
-                except (AttributeError, TypeError):
-                    start = 0
+                    start, shape = 0, value.shape
+                    if value.dtype is field.dtype:
+                        start = addressof(at(value)) if shape[0] else NOWHERE
+                except (AttributeError, IndexError, TypeError):
+                    pass
                 if not start:
                     value = np.require(value, field.dtype, ["C", "W"])
-                    start = address(value)
-                shape = value.shape
-                _check(field, shape)
-                words[word] = start
-                words[word + 1 : word + 1 + len(shape)] = shape
+                    start, shape = address(value), value.shape
+                _tell(words, field, start, shape)
             elif field.real:
-                number = np.float64(value)
-                words[word] = int(number.view(np.int64))
-                value = number if PYTHON else value
+                reals[field.word] = value
+                value = np.float64(value) if PYTHON else value
             else:
-                words[word] = value
+                words[field.word] = value
             own[name] = value
 
     def arrays(self) -> dict[str, Any]:
@@ -219,11 +237,17 @@ def _fields(record: Any) -> dict[str, _Field]:
     }  # fmt: skip
 
 
-def _check(field: _Field, shape: tuple[int, ...]) -> None:
-    """Raise TypeError where an array is not as compiled code takes it to be."""
-    if len(shape) != field.dimensions:
-        raise TypeError(f"{field.name}: {len(shape)} dimensions instead of {field.dimensions}")
-    if field.number and shape[0] != field.number:
-        raise TypeError(f"{field.name}: {shape[0]} numbers instead of {field.number}")
-    if field.columns and shape[1] != field.columns:
-        raise TypeError(f"{field.name}: {shape[1]} columns instead of {field.columns}")
+def _tell(words: array[int], field: _Field, start: int, shape: tuple[int, ...]) -> None:
+    """Note where an array is, and its shape.  Raises TypeError where it is not as compiled code
+    takes it to be."""
+    name, word, dimensions, _, _, columns, number = field
+    if len(shape) != dimensions:
+        raise TypeError(f"{name}: {len(shape)} dimensions instead of {dimensions}")
+    words[word] = start
+    words[word + 1] = shape[0]
+    if number and shape[0] != number:
+        raise TypeError(f"{name}: {shape[0]} numbers instead of {number}")
+    if dimensions > 1:
+        words[word + 2] = shape[1]
+        if columns and shape[1] != columns:
+            raise TypeError(f"{name}: {shape[1]} columns instead of {columns}")

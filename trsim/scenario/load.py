@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
+from functools import cache
 from itertools import islice
 from os import PathLike
 from pathlib import Path
@@ -254,6 +255,12 @@ def _unit_hint(spec: type[Spec] | None, below: tuple) -> str:
 
 def unit_of(spec: type[Spec] | None, key: Any) -> Unit | None:
     """The unit of a field, wherever it stands in the annotation."""
+    of: Any = spec
+    return _unit_of(of, key)
+
+
+@cache
+def _unit_of(spec: Any, key: Any) -> Unit | None:
     field = spec.model_fields.get(key) if spec else None
     parts = [*field.metadata, field.annotation] if field else []
     while parts:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import poses
+from trsim.assemble.equations import constraints, forces, poses
 from trsim.assemble.features import HELD_FROM, HELD_TO, OFFSET, SENSED
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
@@ -40,6 +40,12 @@ def blamed(mechanism: Mechanism, t: float, y: Array, mem: Array) -> Instance | N
     w = workspace(mechanism.model)
     w.mem[:] = mem
     poses(w, y)
+    for place in PLACES:
+        getattr(w, place)[:] = 0.0
+    forces(w, t)
+    constraints(w, t)
+    if all_finite(w):  # together, as nearly always: then each of them is
+        return None
     for e, instance in enumerate(mechanism.instances):
         for place in PLACES:
             getattr(w, place)[:] = 0.0
@@ -47,9 +53,14 @@ def blamed(mechanism: Mechanism, t: float, y: Array, mem: Array) -> Instance | N
             kernel, table = instance.element.kernels.get(word), getattr(w, word)
             if kernel and np.any((table[:, 1] <= e) & (e < table[:, 2])):  # not of what rests
                 kernel(t, w, e, e + 1)
-        if not all(np.all(np.isfinite(getattr(w, place))) for place in PLACES):
+        if not all_finite(w):
             return instance
     return None
+
+
+def all_finite(w: Any) -> bool:
+    """Whether all that kernels of forces and of constraints have written are numbers."""
+    return all(np.isfinite(getattr(w, place)).all() for place in PLACES)
 
 
 def refuse_no_number(mechanism: Mechanism, y: Array, mem: Array) -> None:

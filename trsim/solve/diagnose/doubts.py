@@ -122,6 +122,8 @@ def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]
     """Positions and velocities that had to give way to joints and drives."""
     initial, static = scenario.initial, mechanism.stages.switches.static
     rests = METHODS[scenario.solver.method].rests or (any(static) and static[0])
+    work = scene(mechanism.model)
+    mechanism = replace(mechanism, model=work)  # one workspace for all of it
     p = projected(mechanism, as_joined(mechanism, begun) if rests else begun)
     asked = initial.settles or initial.values  # then it is moved on purpose
     if not asked and p.shift > MOVED * mechanism.model.size:
@@ -136,7 +138,7 @@ def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]
         )
     elif not asked and rests:
         yield from of_balance(mechanism, begun)
-    rows = undecided(scene(mechanism.model), begun.y)
+    rows = undecided(work, begun.y)
     if rows:
         names = dict.fromkeys(mechanism.rows[k].rpartition(".")[0] for k in rows)
         yield (

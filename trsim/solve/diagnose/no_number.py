@@ -13,6 +13,8 @@ HINT = "take care that nothing is divided by zero, as in x/(1e-9 + abs(y))"
 
 def no_number(mechanism: Mechanism, out: NDArray[np.float64]) -> str:
     """The first sensor whose channels are not finite in a row of them, where all others are."""
+    if good(out):
+        return ""
     sensors = [i.name for i in mechanism.instances if i.section == "sensors"]
     bad = [c.name for c in mechanism.columns if not good(out[c.start : c.start + c.size])]
     names = [next((n for n in sensors if c == n or c.startswith(n + ".")), "") for c in bad]

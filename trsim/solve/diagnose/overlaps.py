@@ -22,6 +22,8 @@ FAST = 0.1  # m/s or rad/s
 
 def of_overlaps(mechanism: Mechanism, begun: Start) -> Iterator[str]:
     """Each of them."""
+    if not len(mechanism.model.contact):
+        return
     w = scene(mechanism.model)
     w.branch[:], w.mem[:] = begun.branch, begun.mem
     derivative(w, 0.0, begun.y, np.empty(begun.y.size))

@@ -1,6 +1,7 @@
 """What changes during a run, in one record: a checkpoint is a copy of it."""
 
 from collections.abc import Mapping
+from functools import cache
 from math import nan
 from typing import Any
 
@@ -393,18 +394,21 @@ def zeros(record: type[Packed], model: Model, sizes: Mapping[str, int]) -> dict[
     A name in it is one of `sizes`, or a number of the model, or a table of it, then its length.
     """
 
-    def size(name: int | str) -> int:
-        if isinstance(name, int):
-            return name
-        found = sizes[name] if name in sizes else getattr(model, name)
-        return found if isinstance(found, int) else len(found)
+    known: dict[Any, int] = {**sizes}
+    of_kind: Any = record
+    shapes = shaped(of_kind)
+    for k in {k for _, shape, _ in shapes for k in shape} - known.keys():
+        found = k if isinstance(k, int) else getattr(model, k)
+        known[k] = found if isinstance(found, int) else len(found)
+    return {name: np.zeros([known[k] for k in shape], dtype) for name, shape, dtype in shapes}
 
+
+@cache
+def shaped(record: Any) -> list[tuple[str, Shape, Any]]:
+    """The fields of a record that begin as zeros: their shapes and what they hold."""
     kinds = dict(record.kind.fields)
-    return {
-        name: np.zeros([size(k) for k in shape], kinds[name].dtype)
-        for name, shape in vars(record).items()
-        if isinstance(shape, Shape)
-    }
+    found = [(name, shape) for name, shape in vars(record).items() if isinstance(shape, Shape)]
+    return [(name, shape, np.dtype(kinds[name].dtype)) for name, shape in found]
 
 
 def crowded(r: Record, b: Buffers) -> bool:

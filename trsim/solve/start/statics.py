@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.dense import least_squares, length, product, spaces, symmetric
-from trsim.assemble.equations import forces, poses
+from trsim.assemble.equations import constraints, forces, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import (
     along_rates,
@@ -24,6 +24,7 @@ from trsim.assemble.reduce import (
     in_solve_axes,
     jacobian,
     moves,
+    spread_out,
 )
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED, ContactNumbers
 from trsim.elements.scene import Model, Scene, workspace
@@ -83,13 +84,14 @@ def free_motions(J: Array, free: NDArray[np.bool_], mass: Array) -> Array:
 
 def stiffness(model: Model, y: Array, Z: Array, lam: Array, step: float) -> Array:
     """-Z^T d(F - J^T lam)/dq Z by central differences of the projected forces."""
-    K = np.empty((Z.shape[1], Z.shape[1]))
+    K, w = np.empty((Z.shape[1], Z.shape[1])), workspace(model)
     for k in range(Z.shape[1]):
         size = step / max(float(np.max(np.abs(Z[:, k]))), 1e-300)
         total = []
         for sign in (1.0, -1.0):
-            near = displaced(model, y, sign * size * Z[:, k])
-            total.append(static_forces(model, near) - product(jacobian(model, 0.0, near)[2].T, lam))
+            held = static_forces(w, displaced(w, y, sign * size * Z[:, k]))
+            constraints(w, 0.0)  # at the same place
+            total.append(held - product(spread_out(w, w.m).T, lam))
         K[:, k] = -product(Z.T, total[0] - total[1]) / (2.0 * size)
     return np.asarray(0.5 * (K + K.T))
 

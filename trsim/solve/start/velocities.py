@@ -16,6 +16,7 @@ from trsim.assemble.light import given_back, nearest_in_mass
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import Branches
 from trsim.assemble.projection import project_velocities
+from trsim.assemble.rank import of_length_one, plainly_independent
 from trsim.assemble.reduce import (
     in_solve_axes,
     jacobian,
@@ -128,8 +129,11 @@ def nearest(
     check_rates(ideal, rates, [g * scale for g, _ in asked], bound * scale, v / scale)
     if ideal.beams or not len(J):
         return np.asarray(v)
-    rows = list(range(model.m + len(model.redundant)))
-    branches = Branches(model, y_ideal, rows, J[model.m :], moves(model, planar), C)
+    rows, there = list(range(model.m + len(model.redundant))), moves(model, planar)
+    alone = of_length_one(bound[:, there], scale[there])
+    if not len(model.redundant) and plainly_independent(alone):
+        return np.asarray(v)  # without self-stresses every velocity goes on
+    branches = Branches(model, y_ideal, rows, J[model.m :], there, C)
     return branches.onward(np.asarray(v))
 
 
