@@ -37,7 +37,6 @@ from trsim.solve.path.headings import (
     directed,
     kinked,
     second_order,
-    way,
 )
 from trsim.solve.path.let_go import Held, kept, why
 from trsim.solve.path.log import Log
@@ -272,7 +271,7 @@ class Path:
 
     def way(self, y: Array, y1: Array) -> float:
         """The furthest way of a body, rad or of the mechanism's size."""
-        return way(self.eq, y, y1)
+        return self.eq.ways(y, y1)[1]
 
     def changed(self, place: Place) -> list[Change]:
         out = self.results.out(place, 0.0 * place.v) if self.hears else None

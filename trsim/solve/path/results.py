@@ -21,8 +21,8 @@ from trsim.assemble.reduce import along_rates, less_reactions, moves, spread_out
 from trsim.elements.contract import DRIVES, FRICTION, LOADS, N_BOOK
 from trsim.elements.prescribed import AnyDrive
 from trsim.solve.march import record as rec
-from trsim.solve.path.balance import inertia_forces, measured_with, travel, unbalanced
-from trsim.solve.path.place import SLOW, Equations, Place
+from trsim.solve.path.balance import SLOW, inertia_forces, measured_with, unbalanced
+from trsim.solve.path.place import Equations, Place
 
 Array = NDArray[np.float64]
 
@@ -135,9 +135,7 @@ class Results:
 
     def works_between(self, before: Place, place: Place, with_forces: Place | None = None) -> Array:
         """The works from a place to another, by the forces at both, or at the first by others."""
-        w, there = self.w, place.y.copy()
-        travel(w, before.y, there, 1.0)
-        way, dt = there[w.n_q : w.n_q + w.n_v], place.t - before.t
+        way, dt = self.eq.ways(before.y, place.y)[0], place.t - before.t
         first = self.work(with_forces or before, way, dt)
         return np.asarray(0.5 * (first + self.work(place, way, dt)))
 
