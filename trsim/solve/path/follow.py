@@ -434,7 +434,7 @@ class Path:
         row = round(place.t / self.every)
         at_row = row >= self.next_row and abs(place.t - row * self.every) <= SAME * self.end
         out = self.results.keep(place, a, at_row)
-        self.between.add(place, out)
+        self.between.add(place)
         if at_row:  # between rows a path may have a corner, or an end at which it has no speed
             steady = slope(self.before, place, after, STEADY * self.every)
             self.results.inertia(place, steady)

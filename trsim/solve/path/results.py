@@ -22,6 +22,7 @@ from trsim.elements.contract import DRIVES, FRICTION, LOADS, N_BOOK
 from trsim.elements.prescribed import AnyDrive
 from trsim.solve.march import record as rec
 from trsim.solve.path.balance import SLOW, inertia_forces, measured_with, unbalanced
+from trsim.solve.path.extremes import take
 from trsim.solve.path.place import Equations, Place
 
 Array = NDArray[np.float64]
@@ -52,6 +53,15 @@ class Results:
         self.energies = np.zeros(len(self.rates), bool)
         for c in mechanism.columns:
             self.energies[c.start : c.start + c.size] = c.unit == "J"
+        # by whether there is a row, and whether works are known: what has no extremes there
+        self.untold = {
+            (row, known): ((self.rates & (not row)) | (self.energies & (not known))).astype(
+                np.int64
+            )
+            for row in (False, True)
+            for known in (False, True)
+        }
+        self.full = np.zeros(w.n_out + squares)  # what was taken last, with magnitudes
         self.peak = np.zeros((rec.N_PEAK, w.n_out + squares))
         self.peak[rec.PEAK_MAX], self.peak[rec.PEAK_MIN] = -1e300, 1e300
         self.rows: list[Array] = []
@@ -164,17 +174,9 @@ class Results:
         out[-1] -= self.zero
         return out
 
-    def with_magnitudes(self, out: Array) -> Array:
-        """Channels and, behind them, the magnitudes of vectors among them."""
-        return np.array([*out, *(np.linalg.norm(out[k : k + 3]) for k in self.w.vector.tolist())])
-
     def take(self, t: float, out: Array, row: bool, known: bool = True) -> None:
         """Take the channels of one time into their extremes: rates at rows, works where known."""
-        values = self.with_magnitudes(out)
-        for k, x in ((rec.PEAK_MAX, 1.0), (rec.PEAK_MIN, -1.0)):
-            further = (x * values > x * self.peak[k]) & (row | ~self.rates)
-            further &= known | ~self.energies
-            self.peak[k, further], self.peak[k + 1, further] = values[further], t
+        take(self.w, t, out, self.untold[row, known], self.full, self.peak)
 
     def touching(self, place: Place, out: Array, closed: dict[int, bool]) -> None:
         """A line for each contact that is in."""
