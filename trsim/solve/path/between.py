@@ -111,9 +111,9 @@ class Between:
         forces = place if first.turned else None
         kept.works = first.works + kept.works_between(first.place, place, forces)
         out = kept.relative(kept.out(place, np.zeros_like(place.v)))
+        kept.take(place.t, out, False, False)
         one = Known(place, self.wanted(), kept.works, False)
         kept.works = after
-        kept.take(place.t, out, False, False)
         return one
 
     def promised(self, k: int, inside: list[Known]) -> float | None:

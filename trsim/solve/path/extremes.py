@@ -67,7 +67,7 @@ def draw(times, values, c, span, room):
 @internal
 def is_new(t, times, known, width):
     """Whether no place that is known is near."""
-    for k in range(known):
+    for k in range(known):  # noqa: SIM110 - a generator does not compile
         if abs(t - times[k]) <= NEAR * width:
             return False
     return True
