@@ -15,15 +15,13 @@ from trsim.assemble.equations import (
     constraints,
     forces,
     set_poses,
-    stored_energy,
 )
-from trsim.assemble.outputs import measure
 from trsim.assemble.projection import move_all
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A1, A2, F8, I1, I2, Packed, f8, i8
-from trsim.kernels.signatures import float64, void
+from trsim.kernels.signatures import void
 from trsim.kernels.vectors import clear, clear_table, copy_to
 
 BY_PLACE, BY_SPEED, BY_LOAD = range(3)  # of `steps`: of the differences
@@ -47,6 +45,7 @@ class Balance(Packed):
     order: I1  # (n_v + m) rows exchanged
     g: A1  # (n_v + m) what is left, and Phi
     x: A1  # (n_v + m) a step, or how the place moves with t
+    body: A1  # (10) mass and inertia of one
     slip: A1  # (n) sliding speeds
     room: A2  # (ROOM, n_y or n_v + m)
     rates: A2  # (5, 3) of a function
@@ -192,51 +191,3 @@ def system(s, b, t):
         for c in range(n):
             A[c, n + k] = 0.0
         put_difference(s, A, n + k, b.room, 2.0 * b.steps[BY_LOAD])
-
-
-@compiled(void(SCENE, f8, A1, A1, A1))
-def measured_with(s, t, y, lam, a):
-    """All channels at a state with its multipliers, those of redundant rows too, and its
-    accelerations along the velocities of the solve; no kinetic energy."""
-    unbalanced(s, t, y, lam, s.aside[0])
-    for k in range(s.lam.size):
-        s.lam[k] = lam[k]
-    for f in range(1, s.n_r):
-        o = s.d * (f - 1)
-        if s.d == 3:
-            s.A[f, 0], s.A[f, 1], s.A[f, 5] = a[o], a[o + 1], a[o + 2]
-            continue
-        X = s.X
-        for c in range(3):
-            r = 3 + 3 * c
-            s.A[f, c] = a[o + c]
-            s.A[f, 3 + c] = X[f, r] * a[o + 3] + X[f, r + 1] * a[o + 4] + X[f, r + 2] * a[o + 5]
-    measure(s, t, y, 0.0, 0.0)
-
-
-@compiled(float64(SCENE, f8, A1))
-def stored(s, t, y):
-    """Stored energy at a state, J."""
-    set_poses(s, y)
-    return stored_energy(s, t)
-
-
-@compiled(void(SCENE, A1, A1, A1))
-def inertia_forces(s, y, a, out):
-    """M a and what turning bodies resist with, along the velocities of the solve."""
-    for f in range(1, s.n_r):
-        o, v, I = s.d * (f - 1), s.n_q + s.d * (f - 1), s.inertia[f]
-        if s.d == 3:
-            out[o], out[o + 1] = s.mass[f] * a[o], s.mass[f] * a[o + 1]
-            out[o + 2] = I[8] * a[o + 2]
-            continue
-        w0, w1, w2 = y[v + 3], y[v + 4], y[v + 5]
-        h0 = I[0] * w0 + I[1] * w1 + I[2] * w2
-        h1 = I[3] * w0 + I[4] * w1 + I[5] * w2
-        h2 = I[6] * w0 + I[7] * w1 + I[8] * w2
-        for c in range(3):
-            out[o + c] = s.mass[f] * a[o + c]
-            out[o + 3 + c] = I[3 * c] * a[o + 3] + I[3 * c + 1] * a[o + 4] + I[3 * c + 2] * a[o + 5]
-        out[o + 3] += w1 * h2 - w2 * h1
-        out[o + 4] += w2 * h0 - w0 * h2
-        out[o + 5] += w0 * h1 - w1 * h0

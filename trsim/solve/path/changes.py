@@ -26,7 +26,6 @@ from trsim.laws.functions import (
     TABLE,
     VARIABLE,
 )
-from trsim.solve.diagnose.linearised import mass_matrix
 from trsim.solve.path.balance import unbalanced
 from trsim.solve.path.place import Equations, Place
 
@@ -350,27 +349,28 @@ def watched_places(w: Any, bent: set[int]) -> NDArray[np.int64]:
     return np.array(found, np.int64)
 
 
-def stability(eq: Equations, place: Place) -> tuple[float, float, Array | None]:
+def stability(eq: Equations, place: Place) -> tuple[float, float]:
     """The sign of the determinant; the lowest eigenvalue of the stiffness against the mass, 1/s^2,
-    inf where nothing is free; and the motion that goes with it."""
-    if place.stable is None:
-        place.stable = (place.sign, inf, None) if eq.n == eq.m else lowest(eq, place)
-    return place.stable
+    inf where nothing is free."""
+    if place.lowest is None:
+        place.lowest = inf if eq.n == eq.m else lowest(eq, place)
+    return place.sign, place.lowest
 
 
-def lowest(eq: Equations, place: Place) -> tuple[float, float, Array | None]:
-    """`stability` of what is free to move."""
+def lowest(eq: Equations, place: Place) -> float:
+    """The lowest eigenvalue of what is free to move.
+
+    With one freedom its inverse is the trace of C M, C the compliance: the upper left of A^-1.
+    """
     n, m, A = eq.n, eq.m, place.A
+    if n == m + 1:
+        with np.errstate(divide="ignore"):
+            return float(1.0 / np.sum(place.inverse[:n, :n] * eq.M))
     Z = null_space(A[n:, :n] * eq.unit, n - m) * eq.unit[:, None]
     W = null_space(A[:n, n:].T * eq.unit, n - m) * eq.unit[:, None]
-    poses(eq.work, place.y)
-    M = mass_matrix(eq.work)
-    values, vectors = np.linalg.eig(np.linalg.solve(W.T @ M @ Z, W.T @ A[:n, :n] @ Z))
-    k = int(np.argmin(values.real))
-    value = float(values[k].real)
-    if abs(value) < FLAT * np.abs(values).max() and len(values) > 1:
-        value = 0.0
-    return place.sign, value, np.asarray((Z @ vectors[:, k]).real)
+    values = np.linalg.eigvals(np.linalg.solve(W.T @ eq.M @ Z, W.T @ A[:n, :n] @ Z))
+    value = float(values.real.min())
+    return 0.0 if abs(value) < FLAT * np.abs(values).max() else value
 
 
 def side_of(sign: float, value: float) -> float:

@@ -275,8 +275,7 @@ class Path:
 
     def changed(self, place: Place) -> list[Change]:
         out = self.results.out(place, 0.0 * place.v) if self.hears else None
-        sign, value, _ = stability(self.eq, place)
-        return self.looks.changes(place, out, side_of(sign, value))
+        return self.looks.changes(place, out, side_of(*stability(self.eq, place)))
 
     def looked_inside(self, place: Place, trial: Place) -> tuple[Place, list[Change]] | None:
         """The first place inside a step at which a channel has passed what an event watches it
@@ -446,7 +445,7 @@ class Path:
 
     def judge(self, place: Place) -> None:
         """Take the lowest eigenvalue."""
-        sign, value, _ = stability(self.eq, place)
+        sign, value = stability(self.eq, place)
         self.looks.sense = side_of(sign, value)
         if np.isfinite(value) and value < self.lowest[0]:
             self.lowest = value, place.t

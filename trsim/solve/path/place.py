@@ -5,6 +5,7 @@ from a place before, the anchor: all of it is smooth, and whoever follows the pa
 changes.  The matrix of a place serves for the next one, as long as it converges (newton.py).
 """
 
+from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -28,6 +29,7 @@ from trsim.elements.contract import (
 from trsim.elements.prescribed import AnyDrive, rates_along, write_rates
 from trsim.elements.scene import Scene, scene
 from trsim.laws.friction import CODES
+from trsim.solve.diagnose.linearised import mass_matrix
 from trsim.solve.path.balance import BY_PLACE, ROOM, SLOW, Balance, system, unbalanced
 from trsim.solve.path.newton import (
     FORCING,
@@ -49,6 +51,7 @@ Array = NDArray[np.float64]
 
 STEP = 1e-7  # of the mechanism's size, rad: differences
 IN_GAP = 1e-4  # and of a clearance
+KEPT = 3  # ways from place to place
 ALONE = 1e-10  # relative size of a row that is not independent
 SURFACES = ("surface", "edge")  # travel of what is touched in any direction
 KINETIC = 1  # of the bristles of a law that sticks: which number is the coefficient of sliding
@@ -68,7 +71,7 @@ class Place:
     sign: float = 0.0  # of the determinant of A
     anchor: Array | None = None  # where directions were taken from
     came: tuple[float, Array] | None = None  # time and way from the place before, on a smooth piece
-    stable: Any = field(default=None, init=False)  # what `stability` has found
+    lowest: float | None = field(default=None, init=False)  # eigenvalue, once it was asked for
 
 
 def sliding(mechanism: Mechanism) -> Any:
@@ -116,6 +119,7 @@ class Equations:
         self.directed = self.rubs or len(model.rated) > 0
         self.work: Scene = scene(model)
         w = self.work
+        self.M = mass_matrix(w)
         w.mem[:], w.branch[:] = begun.mem, begun.branch
         self.n, self.m = w.n_v, w.m
         gaps = [g for g in w.contact_par[:, 3].tolist() if np.isfinite(g)]
@@ -130,7 +134,8 @@ class Equations:
         self.sleeves = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
         self.touching = Touching(mechanism, w)
         self.turning = self.sleeves or (w.d == 6 and len(self.surfaces) > 0)
-        self.way = (begun.y, begun.y, np.zeros(w.n_v), 0.0)  # the last one that was asked for
+        # ways that were asked for last, which are asked for again
+        self.known: deque[tuple[Array, Array, Array, float]] = deque(maxlen=KEPT)
         poses(w, begun.y)
         self.load = float(largest_wrench(w, 0.0)) or 1.0
 
@@ -143,7 +148,7 @@ class Equations:
             None,
             {"y": y.shape, "lam": (self.m,), "anchor": y.shape, "A": (all_rows, all_rows),
              "inverse": (all_rows, all_rows), "g": (all_rows,), "x": (all_rows,),
-             "slip": (len(w.rubbing),), "room": (ROOM, max(len(y), all_rows)),
+             "body": (10,), "slip": (len(w.rubbing),), "room": (ROOM, max(len(y), all_rows)),
              "rates": (len(NODES), 3), "times": (len(NODES),)},
             unit=self.unit, pressing=pressing(w), steps=steps, order=np.zeros(all_rows, np.int64),
             moving=np.array([one[:2] for one in self.states], np.int64).reshape(-1, 2),
@@ -208,10 +213,13 @@ class Equations:
     def ways(self, before: Array, y: Array) -> tuple[Array, float]:
         """The ways of all bodies from one state to another, along the velocities of the solve, and
         the furthest of them, rad or of the mechanism's size."""
-        if self.way[0] is not before or self.way[1] is not y:
-            out = np.zeros(self.n)
-            self.way = (before, y, out, went(self.work, self.record, before, y, out))
-        return self.way[2], self.way[3]
+        for first, last, way, far in self.known:
+            if first is before and last is y:
+                return way, far
+        way = np.zeros(self.n)
+        far = went(self.work, self.record, before, y, way)
+        self.known.appendleft((before, y, way, far))
+        return way, far
 
     def asked(self, t: float, y: Array, lam: Array, task: int) -> bool:
         """Do a task at a state; what it gives is in the record."""
