@@ -57,3 +57,21 @@ def test_equal_values_and_a_matrix_of_zeros():
     assert values.tolist() == [1.0, 2.0, 2.0]
     assert np.abs(vectors).sum() == 3.0
     assert dense.symmetric(np.zeros((3, 3)))[0].tolist() == [0.0] * 3
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_inverse(seed):
+    """Also where a pivot is zero as it stands: error within the condition times rounding."""
+    n, rng = 1 + seed, np.random.default_rng(seed)
+    A = rng.normal(size=(n, n))
+    A[0, 0] = A[n // 2, n // 2] = 0.0 if n > 1 else 3.0
+    found = A.copy()
+    sign = dense.invert.python(found, np.zeros(n, np.int64))
+    assert sign == np.linalg.slogdet(A)[0]
+    allowed = 10.0 * n * EPS * np.linalg.cond(A)
+    assert np.abs(found @ A - np.eye(n)).max() <= allowed
+
+
+def test_what_has_no_inverse_is_said_to_have_none():
+    for A in (np.zeros((2, 2)), np.ones((3, 3)), np.full((2, 2), np.nan)):
+        assert dense.invert.python(A, np.zeros(len(A), np.int64)) == 0.0

@@ -97,9 +97,11 @@ EQUIVALENT: dict[tuple[str, str, str], str] = {
         "ROUNDING = 1e-13  # of the largest of its kind: differences of places in balance",
         "2e-13",
     ): "leaves out extremes that are beyond what is known by less than balances are off",
-    ("trsim/solve/path/place.py", "IN_RAMP = 1e-6  # the same of sliding, of its ramp", "2e-06"): (
-        "a central difference of a law that is straight over a million times the step"
-    ),
+    (
+        "trsim/solve/path/newton.py",
+        "IN_RAMP = 1e-6  # of the ramp: differences of sliding",
+        "2e-06",
+    ): ("a central difference of a law that is straight over a million times the step"),
     (
         "trsim/solve/diagnose/swings.py",
         "sound = np.abs(value[np.isfinite(value) & (np.abs(value) < 1e299)])",

@@ -29,10 +29,10 @@ def test_many_contacts():
     assert r.outcome.status == "done" and len(r.events) > 0
 
 
-@pytest.mark.parametrize("method", ["dop853", "scipy:RK45"])
-def test_many_events_between_two_rows(method):
-    r = run(bouncing(solver=f"end: 30, method: '{method}', tolerance: 1e-4", every=10))
-    assert len(r.events) > 512  # twice the buffer
+@pytest.mark.parametrize("method, end, most", [("dop853", 30, 512), ("scipy:RK45", 15, 256)])
+def test_many_events_between_two_rows(method, end, most):
+    r = run(bouncing(solver=f"end: {end}, method: '{method}', tolerance: 1e-4", every=10))
+    assert len(r.events) > most  # than the buffer holds, once or twice
     assert np.all(np.diff(r.events[:, 0]) >= 0.0)
 
 

@@ -75,6 +75,45 @@ def reflect(B, k, scale, A, first, w):
             A[i, j] -= B[i, k] * w[j]
 
 
+@internal
+def invert(A, order):
+    """A becomes its inverse, by elimination with exchange of rows [GolubVanLoan2013 3.4].
+
+    order (n) : filled with the rows exchanged.  Returns the sign of the determinant; 0 where A is
+    singular, and then A is none.
+    """
+    n, sign = order.size, 1.0
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(A[i, k]) > abs(A[best, k]):
+                best = i
+        if not abs(A[best, k]) > 0.0:  # NaN as well
+            return 0.0
+        order[k] = best
+        if best != k:
+            sign = -sign
+            for j in range(n):
+                A[k, j], A[best, j] = A[best, j], A[k, j]
+        pivot = A[k, k]
+        sign = sign if pivot > 0.0 else -sign
+        A[k, k] = 1.0
+        for j in range(n):
+            A[k, j] /= pivot
+        for i in range(n):
+            part = A[i, k]
+            if i != k and part != 0.0:
+                A[i, k] = 0.0
+                for j in range(n):
+                    A[i, j] -= part * A[k, j]
+    for k in range(n - 1, -1, -1):  # columns as rows went
+        at = order[k]
+        if at != k:
+            for i in range(n):
+                A[i, k], A[i, at] = A[i, at], A[i, k]
+    return sign
+
+
 @compiled(void(A2, A1))
 def backwards(U, x):
     """x, the right side, becomes the solution of U x = b, U upper triangular."""

@@ -105,7 +105,7 @@ def at_rest(scenario: Any) -> AtRest:
 
     Raises ScenarioError, ModelError where there is none.
     """
-    still = standing(scenario)
+    still = standing(scenario, assemble(scenario))
     mechanism = assemble(still)
     as_drawn = mechanism.y0
     whole = Initial(tuple(still.joints), {}, True)
@@ -138,9 +138,11 @@ def at_rest(scenario: Any) -> AtRest:
     return AtRest(still, mechanism, begun, work.out[: work.n_out].copy(), turns, found)
 
 
-def standing(scenario: Any) -> Any:
-    """The scenario with nothing in motion: drives stay where they are at t = 0."""
-    moving = assemble(scenario)
+def standing(scenario: Any, moving: Mechanism) -> Any:
+    """The scenario with nothing in motion: drives stay where they are at t = 0.
+
+    moving: its mechanism.
+    """
     rows = {i.name: i.row for i in moving.instances if i.section == "drives"}
     drives = {}
     for name, spec in scenario.drives.items():

@@ -9,15 +9,18 @@ nothing with the compiled methods.
 
 import time
 from collections.abc import Generator
+from math import hypot, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import derivative
+from trsim.assemble.dense import length as size_of
+from trsim.assemble.equations import derivative, evaluate
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.contract import N_BOOK, compiled
+from trsim.elements.contract import N_BOOK, SCENE, compiled
 from trsim.elements.scene import Scene
+from trsim.kernels.signatures import float64
 from trsim.kernels.vectors import clear, copy_to
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.blame import undecided, why
@@ -43,7 +46,16 @@ from trsim.solve.march.land import land
 from trsim.solve.march.loop import begin
 from trsim.solve.march.norm import weigh
 from trsim.solve.march.peaks import between, finish, sample
-from trsim.solve.march.record import Buffers, Record, Settings, crowded, fresh_buffers
+from trsim.solve.march.record import (
+    BUFFERS,
+    RECORD,
+    SETTINGS,
+    Buffers,
+    Record,
+    Settings,
+    crowded,
+    fresh_buffers,
+)
 from trsim.solve.march.rounding import EPS, MARGIN
 from trsim.solve.march.works import ROUNDING
 from trsim.solve.methods.jacobian import PART
@@ -244,8 +256,8 @@ def restarted(run: Run, finer: float, most: float = np.inf) -> Any:
     method, s, r, b, setting = run
 
     def right_hand_side(t: float, y: Array) -> Array:
-        yd = np.empty_like(y)
-        derivative(s, t, np.ascontiguousarray(y), yd)
+        yd = np.empty(y.shape)
+        derivative(s, t, y if y.flags.c_contiguous else y.copy(), yd)
         return yd
 
     atol = allowed(run, finer)
@@ -297,18 +309,18 @@ def of_accelerations(run: Run, h: float, finer: float) -> float:
     length, speed = float(r.length), float(r.speed)
     r.top_acceleration = most = float(largest.python(s, r.yd, r.top_acceleration))
     weight = b.weight * setting.step_error
-    x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
-    third = speed * float(np.linalg.norm(THIRD @ b.P[:, rates] * weight[rates]))
+    x = length * size_of(SECOND @ b.P[:, places] * weight[places])
+    third = speed * size_of(THIRD @ b.P[:, rates] * weight[rates])
     allowed = ADDING.get(method, 1.0) * finer * setting.step_error
     mine = float(share.python(s, setting, h, ONE)) * most
 
     def made(unseen: float) -> tuple[float, float]:
         """How far an error turns in the step, and what it makes of accelerations."""
         v = h * max(third - SHOWN * speed * allowed - unseen, 0.0)
-        turns = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST)
+        turns = min(sqrt(v / max(x, BLIND * s.size)), WIDEST)
         w = turns / h
         # all of a mean over the bodies may be of one
-        off = w * np.hypot(w * length, speed) * np.sqrt(s.n_r - 1)
+        off = w * hypot(w * length, speed) * sqrt(s.n_r - 1)
         return turns, off * most / max(most, w * speed / FURTHEST)
 
     if made(0.0)[1] <= mine:
@@ -322,15 +334,24 @@ def of_accelerations(run: Run, h: float, finer: float) -> float:
 
 
 def of_rounding(run: Run) -> float:
-    """What rounding makes of accelerations, m/s^2: f(y + d) + f(y - d) - 2 f(y), as rounding.py."""
-    _, s, r, b, setting = run
-    used = b.weight > 0.0
-    unit = np.divide(1.0, b.weight * setting.step_error, where=used, out=np.zeros_like(r.y))
-    signs = np.where(np.arange(r.y.size) % 2 > 0, 1.0, -1.0)
-    moved, rates = EPS * np.maximum(np.abs(r.y), unit) * signs, np.empty((3, r.y.size))
-    for sign, out in zip((1.0, -1.0, 0.0), rates, strict=True):
-        derivative(s, float(r.t), r.y + sign * moved, out)
-    return MARGIN * float(apart.python(s, rates[0] + rates[1], 2.0, rates[2]))
+    """What rounding makes of accelerations, m/s^2."""
+    return float(rounded(run.s, run.r, run.b, run.setting))
+
+
+@compiled(float64(SCENE, RECORD, BUFFERS, SETTINGS))
+def rounded(s, r, b, setting):
+    """MARGIN times the largest acceleration in f(y + d) + f(y - d) - 2 f(y), as rounding.py."""
+    y, both, rate = b.rough[0], b.rough[1], b.rough[2]
+    for side in range(2):
+        for c in range(y.size):
+            weight = b.weight[c] * setting.step_error
+            moved = EPS * max(abs(r.y[c]), 1.0 / weight if weight > 0.0 else 0.0)
+            y[c] = r.y[c] + moved * (1.0 if c % 2 == side else -1.0)
+        evaluate(s, r.t, y, rate)
+        for c in range(y.size):
+            both[c] = rate[c] if side == 0 else both[c] + rate[c]
+    evaluate(s, r.t, r.y, rate)
+    return MARGIN * apart(s, both, 2.0, rate)
 
 
 def of_what_is_stiff(s: Scene, r: Record, b: Buffers, solver: Any, h: float) -> None:

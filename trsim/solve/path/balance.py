@@ -15,40 +15,76 @@ from trsim.assemble.equations import (
     constraints,
     forces,
     set_poses,
-    stored_energy,
 )
-from trsim.assemble.outputs import measure
 from trsim.assemble.projection import move_all
 from trsim.elements.contract import SCENE, compiled
+from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
-from trsim.kernels.packed import A1, A2, I1, f8
-from trsim.kernels.signatures import float64, void
+from trsim.kernels.packed import A1, A2, F8, I1, I2, Packed, f8, i8
+from trsim.kernels.signatures import void
 from trsim.kernels.vectors import clear, clear_table, copy_to
 
-BY_PLACE, BY_SPEED, BY_LOAD, SLOWNESS, TIME = range(
-    5
-)  # of `steps`: of the differences; see `travel`
-STATE, LOADS, ROOM = 4, 5, 6  # rows of `room`, behind those of differences
+BY_PLACE, BY_SPEED, BY_LOAD = range(3)  # of `steps`: of the differences
+ROOM = 4  # rows of `room`
+SLOW = 1e-12  # of the way: what velocities are while forces are asked for
 
 
-@compiled(void(SCENE, A1, A1, f8))
-def travel(s, before, y, times):
-    """The velocities of y <- so many times its way from a place before."""
+class Balance(Packed):
+    """What a balance is looked for with, and what is found."""
+
+    y: A1  # (n_y) the state
+    lam: A1  # (m) its multipliers
+    anchor: A1  # (n_y) the state that directions are taken from
+    unit: A1  # (n_v) m, rad: the size of places
+    pressing: I1  # rows whose reactions make friction
+    steps: A1  # (3) of the differences; see above
+    moving: I2  # (k, 2) states that hold the place of a drive with a velocity, its function
+    since: A1  # (k) s, when that began
+    A: A2  # (n_v + m, n_v + m)
+    inverse: A2  # the same
+    order: I1  # (n_v + m) rows exchanged
+    g: A1  # (n_v + m) what is left, and Phi
+    x: A1  # (n_v + m) a step, or how the place moves with t
+    body: A1  # (10) mass and inertia of one
+    slip: A1  # (n) sliding speeds
+    room: A2  # (ROOM, n_y or n_v + m)
+    rates: A2  # (5, 3) of a function
+    times: A1  # (5) s
+    ask: i8  # addresses, see newton.py
+    system: i8
+    unbalanced: i8
+    write_rates: i8
+    rubs: i8  # 1: something rubs
+    timed: i8  # 1: something is a function of t
+    clock: A1  # all that follow
+    small: F8  # s, of differences against t
+    load: F8  # N, the largest force met
+    stiffest: F8  # N*m, of the matrix made last
+    sign: F8  # of its determinant
+    frozen: F8  # 1: velocities of a state are as they are
+
+
+BALANCE = Balance.kind
+
+
+@internal
+def ways(s, before, y, times, out, at):
+    """out[at:] <- so many times the way to y from a place before, along the velocities."""
     for f in range(1, s.n_r):
-        v = s.n_q + s.d * (f - 1)
+        v = at + s.d * (f - 1)
         if s.d == 3:
             for c in range(3):
-                y[v + c] = times * (y[3 * (f - 1) + c] - before[3 * (f - 1) + c])
+                out[v + c] = times * (y[3 * (f - 1) + c] - before[3 * (f - 1) + c])
             continue
         q = 7 * (f - 1)
         for c in range(3):
-            y[v + c] = times * (y[q + c] - before[q + c])
+            out[v + c] = times * (y[q + c] - before[q + c])
         a0, a1, a2, a3 = before[q + 3], -before[q + 4], -before[q + 5], -before[q + 6]
         b0, b1, b2, b3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
         w = 2.0 * times if a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3 >= 0.0 else -2.0 * times
-        y[v + 3] = w * (a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2)
-        y[v + 4] = w * (a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1)
-        y[v + 5] = w * (a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0)
+        out[v + 3] = w * (a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2)
+        out[v + 4] = w * (a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1)
+        out[v + 5] = w * (a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0)
 
 
 @internal
@@ -65,7 +101,11 @@ def into_axes(s, F, out):
             out[o + 3 + c] = X[f, 3 + c] * F[f, 3] + X[f, 6 + c] * F[f, 4] + X[f, 9 + c] * F[f, 5]
 
 
-@compiled(void(SCENE, f8, A1, A1, A1))
+UNBALANCED = void(SCENE, f8, A1, A1, A1)
+call_unbalanced = caller(UNBALANCED)
+
+
+@compiled(UNBALANCED)
 def unbalanced(s, t, y, lam, g):
     """g and, behind it, Phi at a state with its multipliers."""
     s.status[1] += 1
@@ -114,88 +154,40 @@ def put_difference(s, A, c, room, size):
         A[k, c] -= (room[2, k] - room[3, k]) / size
 
 
-@compiled(void(SCENE, I1, A1, A2, A2))
-def system(s, pressing, steps, room, A):
-    """A at a state with its multipliers.
+@internal
+def evaluate(s, b, t, y, lam, g):
+    """`unbalanced` called by its address: compiled once, not into every caller."""
+    call_unbalanced(b.unbalanced, s, t, y, lam, g)
 
-    pressing: rows whose reactions make friction; steps: of the differences, the second one 0 where
-    nothing rubs, and the time; room (6, n_y or n_v + m): states and forces, and behind them the
-    state and the multipliers.
-    """
-    n, away, t, y, lam = s.n_v, room[1], steps[TIME], room[STATE], room[LOADS]
+
+@compiled(void(SCENE, BALANCE, f8))
+def system(s, b, t):
+    """A at the state of b with its multipliers, where the scene was evaluated last."""
+    n, away, y, lam, A = s.n_v, b.room[1], b.y, b.lam, b.A
     clear_table(A)
-    unbalanced(s, t, y, lam, room[2])
     put_rows(s, A)
     for c in range(n):
         for side in range(2):
-            copy_to(room[0], y)
+            copy_to(b.room[0], y)
             clear(away)
             turns = c % s.d > 1 if s.d == 3 else c % s.d > 2
-            away[c] = steps[BY_PLACE] * (1.0 - 2.0 * side) * (1.0 if turns else s.size)
-            move_all(s, room[0], away)
-            unbalanced(s, t, room[0], lam, room[2 + side])
-        put_difference(s, A, c, room, 2.0 * abs(away[c]))
-    if steps[BY_SPEED] > 0.0:
+            away[c] = b.steps[BY_PLACE] * (1.0 - 2.0 * side) * (1.0 if turns else s.size)
+            move_all(s, b.room[0], away)
+            evaluate(s, b, t, b.room[0], lam, b.room[2 + side])
+        put_difference(s, A, c, b.room, 2.0 * abs(away[c]))
+    if b.steps[BY_SPEED] > 0.0:
         for c in range(n):
             for side in range(2):
-                copy_to(room[0], y)
-                room[0, s.n_q + c] += steps[BY_SPEED] * (1.0 - 2.0 * side)
-                unbalanced(s, t, room[0], lam, room[2 + side])
-            put_difference(s, A, c, room, 2.0 * steps[BY_SPEED] / steps[SLOWNESS])
-    for p in range(pressing.size):
-        k = pressing[p]
+                copy_to(b.room[0], y)
+                b.room[0, s.n_q + c] += b.steps[BY_SPEED] * (1.0 - 2.0 * side)
+                evaluate(s, b, t, b.room[0], lam, b.room[2 + side])
+            put_difference(s, A, c, b.room, 2.0 * b.steps[BY_SPEED] / SLOW)
+    for p in range(b.pressing.size):
+        k = b.pressing[p]
         for side in range(2):
             copy_to(away, lam)
-            away[k] += steps[BY_LOAD] * (1.0 - 2.0 * side)
-            unbalanced(s, t, y, away, room[2 + side])
+            away[k] += b.steps[BY_LOAD] * (1.0 - 2.0 * side)
+            evaluate(s, b, t, y, away, b.room[2 + side])
         for c in range(n):
             A[c, n + k] = 0.0
-        put_difference(s, A, n + k, room, 2.0 * steps[BY_LOAD])
-
-
-@compiled(void(SCENE, f8, A1, A1, A1))
-def measured_with(s, t, y, lam, a):
-    """All channels at a state with its multipliers, those of redundant rows too, and its
-    accelerations along the velocities of the solve; no kinetic energy."""
-    unbalanced(s, t, y, lam, s.aside[0])
-    for k in range(s.lam.size):
-        s.lam[k] = lam[k]
-    for f in range(1, s.n_r):
-        o = s.d * (f - 1)
-        if s.d == 3:
-            s.A[f, 0], s.A[f, 1], s.A[f, 5] = a[o], a[o + 1], a[o + 2]
-            continue
-        X = s.X
-        for c in range(3):
-            r = 3 + 3 * c
-            s.A[f, c] = a[o + c]
-            s.A[f, 3 + c] = X[f, r] * a[o + 3] + X[f, r + 1] * a[o + 4] + X[f, r + 2] * a[o + 5]
-    measure(s, t, y, 0.0, 0.0)
-
-
-@compiled(float64(SCENE, f8, A1))
-def stored(s, t, y):
-    """Stored energy at a state, J."""
-    set_poses(s, y)
-    return stored_energy(s, t)
-
-
-@compiled(void(SCENE, A1, A1, A1))
-def inertia_forces(s, y, a, out):
-    """M a and what turning bodies resist with, along the velocities of the solve."""
-    for f in range(1, s.n_r):
-        o, v, I = s.d * (f - 1), s.n_q + s.d * (f - 1), s.inertia[f]
-        if s.d == 3:
-            out[o], out[o + 1] = s.mass[f] * a[o], s.mass[f] * a[o + 1]
-            out[o + 2] = I[8] * a[o + 2]
-            continue
-        w0, w1, w2 = y[v + 3], y[v + 4], y[v + 5]
-        h0 = I[0] * w0 + I[1] * w1 + I[2] * w2
-        h1 = I[3] * w0 + I[4] * w1 + I[5] * w2
-        h2 = I[6] * w0 + I[7] * w1 + I[8] * w2
-        for c in range(3):
-            out[o + c] = s.mass[f] * a[o + c]
-            out[o + 3 + c] = I[3 * c] * a[o + 3] + I[3 * c + 1] * a[o + 4] + I[3 * c + 2] * a[o + 5]
-        out[o + 3] += w1 * h2 - w2 * h1
-        out[o + 4] += w2 * h0 - w0 * h2
-        out[o + 5] += w0 * h1 - w1 * h0
+        put_difference(s, A, n + k, b.room, 2.0 * b.steps[BY_LOAD])

@@ -55,7 +55,7 @@ def check(scenario: Any, mechanism: Mechanism) -> None:
 
 def begin(scenario: Any, mechanism: Mechanism) -> Start:
     """The start of a path; raises ModelError where there is none."""
-    still = standing(scenario)
+    still = standing(scenario, mechanism)
     if scenario.initial.values:
         y, *_ = positions(still, mechanism, Initial((), scenario.initial.values))
         mechanism = replace(mechanism, y0=y)

@@ -12,10 +12,12 @@ and friction is against the way that was taken from the same place as before.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import isnan
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.solve.path.extremes import LOOKS, promised
 from trsim.solve.path.place import Place
 from trsim.solve.path.results import Results
 
@@ -23,11 +25,8 @@ Array = NDArray[np.float64]
 
 POINTS = 7  # places a polynomial goes through, at most
 FEWEST = 4  # of a piece: fewer say too little, and more are solved for
-LOOKS = 32  # parts of the way between two places at which a polynomial is looked at
 TRIES = 10  # places solved for between two neighbours
 SMALL = 0.01  # of what may be missed of the largest channel of its kind: less is no extreme
-NEAR = 1e-4  # of the way between two places: nearer to a known one there is nothing new
-UNSURE = 2.0  # times the last term: what a polynomial is off by
 ROUNDING = 1e-13  # of the largest of its kind: differences of places in balance
 
 
@@ -52,13 +51,14 @@ class Between:
         self.sought, self.kin, self.lever = w.sought[told], w.kin[told], w.lever[told]
         self.least = np.asarray(w.least)[told]
         self.largest = np.zeros(int(w.kin.max(initial=-1)) + 1)
+        self.room = np.zeros((4, max(LOOKS + 1, POINTS + TRIES)))
         self.known: list[Known] = []
         self.solve: Callable[[Place, Place, float], Place | None] = lambda a, b, t: None
 
-    def add(self, place: Place, out: Array) -> None:
-        """Take the next place of the piece, with all channels there."""
+    def add(self, place: Place) -> None:
+        """Take the next place of the piece, which is the one that was kept last."""
         kept = self.results
-        one = Known(place, self.wanted(out), kept.works.copy(), kept.turned)
+        one = Known(place, self.wanted(), kept.works.copy(), kept.turned)
         if self.known and place.t <= self.known[-1].place.t:  # the same, behind a change
             self.known[-1] = one
             return
@@ -75,9 +75,9 @@ class Between:
             self.look(k)
         self.known = []
 
-    def wanted(self, out: Array) -> Array:
-        """What is looked at, of all channels; the sizes of those of one kind follow."""
-        found = self.results.with_magnitudes(out)[self.sought]
+    def wanted(self) -> Array:
+        """What is looked at, of the channels taken last; the sizes of those of one kind follow."""
+        found = self.results.full[self.sought]
         np.maximum.at(self.largest, self.kin, np.abs(found) * self.lever)
         return np.asarray(found)
 
@@ -111,59 +111,24 @@ class Between:
         forces = place if first.turned else None
         kept.works = first.works + kept.works_between(first.place, place, forces)
         out = kept.relative(kept.out(place, np.zeros_like(place.v)))
-        one = Known(place, self.wanted(out), kept.works, False)
-        kept.works = after
         kept.take(place.t, out, False, False)
+        one = Known(place, self.wanted(), kept.works, False)
+        kept.works = after
         return one
 
     def promised(self, k: int, inside: list[Known]) -> float | None:
         """Where between two neighbours a channel may go furthest beyond its extremes; None where
         all stay within what may be missed."""
-        a, b = self.known[k].place.t, self.known[k + 1].place.t
         nodes = [self.known[k], self.known[k + 1], *inside]
+        middle = 0.5 * (nodes[0].place.t + nodes[1].place.t)
         others = [one for i, one in enumerate(self.known) if i not in (k, k + 1)]
-        others.sort(key=lambda one: abs(one.place.t - 0.5 * (a + b)))
+        others.sort(key=lambda one: abs(one.place.t - middle))
         nodes = (nodes + others)[: max(POINTS, len(nodes))]
         times = np.array([one.place.t for one in nodes])
-        x = np.linspace(a, b, LOOKS + 1)
-        known = np.array([a, b, *(one.place.t for one in inside)])
-        value, doubt = newton(times, np.array([one.values for one in nodes]), x)
         high, low = self.results.peak[0, self.sought], self.results.peak[2, self.sought]
         of_kind = self.largest[self.kin] / self.lever
         enough = self.missed * np.maximum(high - low, SMALL * of_kind) + ROUNDING * of_kind + 1e-300
-        up, down = tops(x, value), tops(x, -value)
-        above = (up[1] + doubt[1:-1] - high) / enough
-        below = np.where(low > self.least, (low + down[1] + doubt[1:-1]) / enough, -1.0)
-        at = np.array([up[0], down[0]])
-        away = np.abs(at[..., None] - known).min(axis=-1) > NEAR * (b - a)
-        beyond = np.where(away, np.array([above, below]), -1.0)
-        if not beyond.size or not beyond.max() > 1.0:
-            return None
-        return float(at.ravel()[int(np.argmax(beyond))])
-
-
-def tops(x: Array, values: Array) -> tuple[Array, Array]:
-    """Where values (times, channels) are largest around each time but the first and the last, and
-    how large: on a top at that of the parabola through three, else there."""
-    before, there, after = values[:-2], values[1:-1], values[2:]
-    rise, bend = after - before, 2.0 * there - before - after
-    top = (there >= before) & (there >= after) & (bend > 0.0)
-    off = np.where(top, 0.5 * rise / np.where(top, bend, 1.0), 0.0)
-    return x[1:-1, None] + off * (x[1] - x[0]), there + 0.25 * rise * off
-
-
-def newton(times: Array, values: Array, x: Array) -> tuple[Array, Array]:
-    """The polynomial through values (nodes, channels) at x, and what it may be off by."""
-    scale = times[1] - times[0]  # both ends come first
-    u, at = (times - times[0]) / scale, (x - times[0]) / scale
-    slope = values.copy()
-    for j in range(1, len(u)):
-        by = u[j:] - u[:-j]
-        slope[j:] = (slope[j:] - slope[j - 1 : -1]) / by[:, None]
-    value, term = np.tile(slope[0], (len(at), 1)), np.ones(len(at))
-    doubt = np.zeros_like(value)
-    for j in range(1, len(u)):
-        term = term * (at - u[j - 1])
-        doubt = np.abs(term[:, None] * slope[j])
-        value = value + term[:, None] * slope[j]
-    return value, UNSURE * doubt
+        limits = np.array([high, low, enough, self.least])
+        values = np.array([one.values for one in nodes])
+        at = promised(times, values, limits, self.room, float(len(inside)))
+        return None if isnan(at) else at

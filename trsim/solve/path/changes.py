@@ -26,7 +26,6 @@ from trsim.laws.functions import (
     TABLE,
     VARIABLE,
 )
-from trsim.solve.diagnose.linearised import mass_matrix
 from trsim.solve.path.balance import unbalanced
 from trsim.solve.path.place import Equations, Place
 
@@ -37,11 +36,6 @@ AT_REST = 1e-6  # of the mechanism's size in the time of the path: a slower slid
 FLAT = 1e-9  # of the largest eigenvalue: one that is rounding
 NEARLY = 0.01  # of an arch that a gap makes in a step: what its cubic may be wrong by
 FLATTEST = 1e-12  # of the mechanism's size: an arch that is rounding
-WITHIN = 8  # parts of a step in which drives and loads are asked where they are
-AWAY, ASKED = (
-    0.05,
-    0.1,
-)  # of the size, or rad, and of the largest force: how much further they may go
 CONTACT, PIECE, RIM, RUB, WATCH, SENSE = "contact", "piece", "rim", "rub", "watch", "sense"
 
 
@@ -79,8 +73,9 @@ class Looks:
 
     def gaps(self, place: Place) -> dict[int, tuple[float, float]]:
         """Penetration of every contact, and its rate along the path."""
-        y = self.moving(place)
-        poses(self.work, y)
+        if not self.closed:
+            return {}
+        poses(self.work, self.moving(place))
         gaps(self.work, place.t)
         return {e: tuple(self.work.gap[e].tolist()) for e in self.closed}  # type: ignore[misc]
 
@@ -257,24 +252,7 @@ class Looks:
     def passed_over(self, a: Place, b: Place) -> bool:
         """Whether what drives and loads ask for goes much further inside a step than at its ends,
         as of one that is back at every row, or a drive goes back in it, so that what rubs turns."""
-        eq = self.eq
-        if not eq.mechanism.timed:
-            return False
-        left, rates = [], []
-        unit = np.asarray(eq.work.row_unit)[: eq.m]
-        for k in range(WITHIN + 1):
-            t = a.t + k / WITHIN * (b.t - a.t)
-            g = eq.left(t, eq.at_time(b.y, b.t, t), b.lam)
-            left.append((float((np.abs(g[eq.n :]) / unit).max(initial=0.0)), eq.relative(g)))
-            if eq.rubs:
-                rates.append(np.sign(eq.work.phi_t[: eq.m]))
-        if eq.rubs:
-            signs = np.array(rates)
-            there = (signs[0] == signs[-1]) & (signs[0] != 0.0)
-            if np.any(there & np.any(signs == -signs[0], axis=0)):
-                return True
-        (way, force), *between = left
-        return any(x > way + AWAY or f > force + ASKED for x, f in between)
+        return self.eq.mechanism.timed and self.eq.passes_over(a.t, b.t, b.y, b.lam)
 
     def whose(self, place: int) -> int:
         """The instance that has the function of a piece, held at this place; -1 of none."""
@@ -371,22 +349,28 @@ def watched_places(w: Any, bent: set[int]) -> NDArray[np.int64]:
     return np.array(found, np.int64)
 
 
-def stability(eq: Equations, place: Place) -> tuple[float, float, Array | None]:
+def stability(eq: Equations, place: Place) -> tuple[float, float]:
     """The sign of the determinant; the lowest eigenvalue of the stiffness against the mass, 1/s^2,
-    inf where nothing is free; and the motion that goes with it."""
+    inf where nothing is free."""
+    if place.lowest is None:
+        place.lowest = inf if eq.n == eq.m else lowest(eq, place)
+    return place.sign, place.lowest
+
+
+def lowest(eq: Equations, place: Place) -> float:
+    """The lowest eigenvalue of what is free to move.
+
+    With one freedom its inverse is the trace of C M, C the compliance: the upper left of A^-1.
+    """
     n, m, A = eq.n, eq.m, place.A
-    sign, _ = np.linalg.slogdet(A)
-    if n == m:
-        return float(sign), inf, None
+    if n == m + 1:
+        with np.errstate(divide="ignore"):
+            return float(1.0 / np.sum(place.inverse[:n, :n] * eq.M))
     Z = null_space(A[n:, :n] * eq.unit, n - m) * eq.unit[:, None]
     W = null_space(A[:n, n:].T * eq.unit, n - m) * eq.unit[:, None]
-    M = mass_matrix(eq.work)
-    values, vectors = np.linalg.eig(np.linalg.solve(W.T @ M @ Z, W.T @ A[:n, :n] @ Z))
-    k = int(np.argmin(values.real))
-    value = float(values[k].real)
-    if abs(value) < FLAT * np.abs(values).max() and len(values) > 1:
-        value = 0.0
-    return float(sign), value, np.asarray((Z @ vectors[:, k]).real)
+    values = np.linalg.eigvals(np.linalg.solve(W.T @ eq.M @ Z, W.T @ A[:n, :n] @ Z))
+    value = float(values.real.min())
+    return 0.0 if abs(value) < FLAT * np.abs(values).max() else value
 
 
 def side_of(sign: float, value: float) -> float:

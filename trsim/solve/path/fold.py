@@ -26,11 +26,8 @@ CLOSE = 1e-12
 
 def fold(eq: Equations, place: Place, end: float) -> Place | None:
     """The place ahead where a path turns back; None where it is not found."""
-    eq.frozen, anchor = True, eq.anchor
-    try:
+    with eq.frozen():
         return turning(eq, place, end)
-    finally:
-        eq.frozen, eq.anchor = False, anchor
 
 
 def turning(eq: Equations, place: Place, end: float) -> Place | None:

@@ -37,7 +37,6 @@ from trsim.solve.path.headings import (
     directed,
     kinked,
     second_order,
-    way,
 )
 from trsim.solve.path.let_go import Held, kept, why
 from trsim.solve.path.log import Log
@@ -272,12 +271,11 @@ class Path:
 
     def way(self, y: Array, y1: Array) -> float:
         """The furthest way of a body, rad or of the mechanism's size."""
-        return way(self.eq, y, y1)
+        return self.eq.ways(y, y1)[1]
 
     def changed(self, place: Place) -> list[Change]:
         out = self.results.out(place, 0.0 * place.v) if self.hears else None
-        sign, value, _ = stability(self.eq, place)
-        return self.looks.changes(place, out, side_of(sign, value))
+        return self.looks.changes(place, out, side_of(*stability(self.eq, place)))
 
     def looked_inside(self, place: Place, trial: Place) -> tuple[Place, list[Change]] | None:
         """The first place inside a step at which a channel has passed what an event watches it
@@ -435,7 +433,7 @@ class Path:
         row = round(place.t / self.every)
         at_row = row >= self.next_row and abs(place.t - row * self.every) <= SAME * self.end
         out = self.results.keep(place, a, at_row)
-        self.between.add(place, out)
+        self.between.add(place)
         if at_row:  # between rows a path may have a corner, or an end at which it has no speed
             steady = slope(self.before, place, after, STEADY * self.every)
             self.results.inertia(place, steady)
@@ -447,7 +445,7 @@ class Path:
 
     def judge(self, place: Place) -> None:
         """Take the lowest eigenvalue."""
-        sign, value, _ = stability(self.eq, place)
+        sign, value = stability(self.eq, place)
         self.looks.sense = side_of(sign, value)
         if np.isfinite(value) and value < self.lowest[0]:
             self.lowest = value, place.t

@@ -9,8 +9,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.solve.path.balance import travel
-from trsim.solve.path.place import RAMP, SLOW, Equations, Place
+from trsim.solve.path.balance import SLOW
+from trsim.solve.path.newton import RAMP
+from trsim.solve.path.place import Equations, Place
 
 Array = NDArray[np.float64]
 
@@ -27,18 +28,6 @@ LOST = 1e-13  # of the size: ways that are rounding
 BRIEF = 1e-6  # of the size: the first step behind a corner
 
 
-def way(eq: Equations, y: Array, y1: Array) -> float:
-    """The furthest way of a body, rad or of the mechanism's size."""
-    return float(np.abs(ways(eq, y, y1) / eq.unit).max(initial=0.0))
-
-
-def ways(eq: Equations, y: Array, y1: Array) -> Array:
-    """The ways of all bodies from one state to another, along the velocities of the solve."""
-    there = y1.copy()
-    travel(eq.work, y, there, 1.0)
-    return np.asarray(there[eq.work.n_q : eq.work.n_q + eq.n])
-
-
 def directed(eq: Equations, place: Place, every: float) -> Place:
     """The start with friction against the way it is going to go."""
     if not eq.directed:
@@ -53,17 +42,17 @@ def directed(eq: Equations, place: Place, every: float) -> Place:
         if found is None:
             return place
         ahead = found[0].copy()
-        travel(eq.work, place.y, ahead, SLOW)
-        if h >= every or np.abs(ahead[first] / eq.unit).max() > SLOW * MOVED:
+        came, far = eq.ways(place.y, ahead)
+        ahead[first] = SLOW * came
+        if h >= every or far > MOVED:
             break
         h *= 10.0
     y = place.y.copy()
     rolls = max(eq.stuck(ahead).values(), default=0.0) > STUCK / FASTER
     y[first] = ahead[first] * (1.0 if rolls else FASTER)
-    eq.frozen = True
-    again = eq.solved(place.t, y, found[1], None)
-    at_start = eq.place(place.t, *again) if again is not None else None
-    eq.frozen = False
+    with eq.frozen():
+        again = eq.solved(place.t, y, found[1], None)
+        at_start = eq.place(place.t, *again) if again is not None else None
     return at_start or place
 
 
@@ -75,11 +64,10 @@ def anchored(
     What came here and rests counts as having begun a little before, in whatever steps others go
     on.  smooth: so may all the rest, for a place so close ahead that it tells no direction.
     """
-    came = ways(eq, eq.anchor, place.y)
-    went = np.abs(came / eq.unit)
-    most = went.max(initial=0.0)
+    came, most = eq.ways(eq.anchor, place.y)
     if most <= least:
         return
+    went = np.abs(came / eq.unit)
     still = np.abs(place.v / eq.unit) * every <= RAMP
     rests = still & (went > RAMP)
     d = eq.work.d
@@ -97,8 +85,8 @@ def anchored(
 
 def came_by(eq: Equations, place: Place, there: Place) -> tuple[float, Array] | None:
     """Time and way from a place to the next; None of a way that tells no direction."""
-    went = ways(eq, place.y, there.y)
-    return (there.t - place.t, went) if np.abs(went / eq.unit).max(initial=0.0) > MOVED else None
+    went, far = eq.ways(place.y, there.y)
+    return (there.t - place.t, went) if far > MOVED else None
 
 
 def second_order(eq: Equations, place: Place, h: float) -> Array:
@@ -124,10 +112,10 @@ def bend(eq: Equations, place: Place, trial: Place) -> float:
     """How far a step is off what the rates at both its ends make of it, in its way, of the size,
     and in the forces of joints and drives, of the largest: much where a touch has passed from one
     piece of a shape to another inside, or something went up and down again."""
-    half, way = 0.5 * (trial.t - place.t), ways(eq, place.y, trial.y)
     if eq.sleeves:  # whose friction turns, which rates of forces know nothing of
         return 0.0
-    if np.abs(way / eq.unit).max(initial=0.0) <= LEAST:
+    half, (way, far) = 0.5 * (trial.t - place.t), eq.ways(place.y, trial.y)
+    if far <= LEAST:
         return 0.0
     off = np.abs(way - half * (place.v + trial.v)) / eq.unit
     force = np.abs(trial.lam - place.lam - half * (place.lam_rate + trial.lam_rate))
@@ -145,6 +133,6 @@ def by_rates(off: list[float]) -> bool:
 def kinked(eq: Equations, place: Place, after: Place) -> bool:
     """Whether rates jump between two places, as where what stuck begins to slide."""
     half = 0.5 * (after.t - place.t)
-    off = np.abs(ways(eq, place.y, after.y) - half * (place.v + after.v)) / eq.unit
+    off = np.abs(eq.ways(place.y, after.y)[0] - half * (place.v + after.v)) / eq.unit
     told = half * (np.abs(place.v) + np.abs(after.v)) / eq.unit
     return bool(np.any(off > KINK * told + LOST))

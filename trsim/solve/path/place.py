@@ -1,14 +1,14 @@
 """Places of a static path: solved for by Newton's method, with what leads on from there.
 
-    [ K  G ] [ dq   ]   [ g    ]         A of balance.py
-    [ J  0 ] [ dlam ] = [ -Phi ]
-
 Contacts are held in or out, functions on their pieces, and what rubs in the direction of the way
 from a place before, the anchor: all of it is smooth, and whoever follows the path looks for what
-changes.  The matrix of a place serves for the next one, as long as it converges.
+changes.  The matrix of a place serves for the next one, as long as it converges (newton.py).
 """
 
-from dataclasses import dataclass
+from collections import deque
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -24,49 +24,37 @@ from trsim.elements.contract import (
     FLIGHT,
     IMPACT_SPEED,
     PHASE,
-    Load,
     Memory,
 )
-from trsim.elements.prescribed import AnyDrive, rates_along
+from trsim.elements.prescribed import AnyDrive, rates_along, write_rates
 from trsim.elements.scene import Scene, scene
 from trsim.laws.friction import CODES
-from trsim.solve.path.balance import (
-    BY_SPEED,
-    LOADS,
-    ROOM,
-    SLOWNESS,
-    STATE,
-    TIME,
-    system,
-    travel,
-    unbalanced,
+from trsim.solve.diagnose.linearised import mass_matrix
+from trsim.solve.path.balance import BY_PLACE, ROOM, SLOW, Balance, system, unbalanced
+from trsim.solve.path.newton import (
+    FORCING,
+    INVERSE,
+    LEAD,
+    LEFT,
+    MATRIX,
+    NODES,
+    RAMP,
+    WEIGHTS,
+    ask,
+    passes_over,
+    solve,
+    went,
 )
 from trsim.solve.path.touching import Touching
 
 Array = NDArray[np.float64]
 
-SLOW = 1e-12  # of the way: what velocities are while forces are asked for
-RAMP = 1e-9  # of the mechanism's size: sliding over more is full sliding
 STEP = 1e-7  # of the mechanism's size, rad: differences
-IN_RAMP = 1e-6  # the same of sliding, of its ramp
-ENOUGH = 0.2  # and of the way: what rounding makes of a difference of speeds is a millionth
 IN_GAP = 1e-4  # and of a clearance
+KEPT = 3  # ways from place to place
 ALONE = 1e-10  # relative size of a row that is not independent
-LOAD = 1e-6  # and of multipliers, of the largest
-CLOSE = 1e-13  # of the mechanism's size, rad: the last step of Newton's method
-EPS = 4e-16
-ROUNDING = 1e-15  # of coordinates: what they are off by
-NEARLY = 1e-9  # the same, where rounding lets it come no nearer
-BALANCED = 1e-6  # of the largest force: what rounding makes of a stiff contact is less
-EXACT = 1e-10  # the same, of a matrix that may be none of the place
-ITERATIONS = 25
-CHORD = 0.2  # what a step must be of the one before, or the matrix is made anew
-TURN = 0.3  # rad, or of the size: a step of Newton's method goes no further
 SURFACES = ("surface", "edge")  # travel of what is touched in any direction
 KINETIC = 1  # of the bristles of a law that sticks: which number is the coefficient of sliding
-# what a quadrature of five points is made of, on 0..1
-NODE, WEIGHT = (part / 2.0 for part in np.polynomial.legendre.leggauss(5))
-NODE = NODE + 0.5
 
 
 @dataclass
@@ -80,8 +68,10 @@ class Place:
     inverse: Array
     v: Array  # velocities along the path
     lam_rate: Array
+    sign: float = 0.0  # of the determinant of A
     anchor: Array | None = None  # where directions were taken from
     came: tuple[float, Array] | None = None  # time and way from the place before, on a smooth piece
+    lowest: float | None = field(default=None, init=False)  # eigenvalue, once it was asked for
 
 
 def sliding(mechanism: Mechanism) -> Any:
@@ -129,19 +119,14 @@ class Equations:
         self.directed = self.rubs or len(model.rated) > 0
         self.work: Scene = scene(model)
         w = self.work
+        self.M = mass_matrix(w)
         w.mem[:], w.branch[:] = begun.mem, begun.branch
         self.n, self.m = w.n_v, w.m
-        self.pressing = pressing(w)
         gaps = [g for g in w.contact_par[:, 3].tolist() if np.isfinite(g)]
-        self.steps = np.zeros(5)
-        self.steps[:3] = STEP, IN_RAMP * SLOW * RAMP * w.size if self.rubs else 0.0, LOAD
-        self.steps[SLOWNESS] = SLOW
-        if gaps:
-            self.steps[0] = min(STEP, IN_GAP * min(gaps) / w.size)
-        wide = max(len(begun.y), self.n + self.m)
-        self.room = np.zeros((ROOM, wide))
         self.unit = np.tile([w.size, w.size, 1.0] if w.d == 3 else [w.size] * 3 + [1.0] * 3,
                             w.n_r - 1)  # fmt: skip
+        self.states = self.driven()  # see at_time
+        self.record = self.recorded(begun.y, min([STEP, *(IN_GAP * g / w.size for g in gaps)]))
         self.anchor = begun.y.copy()
         self.close: Array | None = None  # the same for places close ahead, see headings.py
         # surfaces that slide in several ways at once, whose direction turns
@@ -149,11 +134,29 @@ class Equations:
         self.sleeves = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
         self.touching = Touching(mechanism, w)
         self.turning = self.sleeves or (w.d == 6 and len(self.surfaces) > 0)
-        self.stiffest = 0.0  # N*m, of the matrix made last
-        self.frozen = False  # velocities of a state are as they are
-        self.states = self.driven()  # see at_time
+        # ways that were asked for last, which are asked for again
+        self.known: deque[tuple[Array, Array, Array, float]] = deque(maxlen=KEPT)
         poses(w, begun.y)
-        self.load = float(largest_wrench(w, 0.0)) or 1.0  # the largest force met
+        self.load = float(largest_wrench(w, 0.0)) or 1.0
+
+    def recorded(self, y: Array, step: float) -> Balance:
+        """What compiled functions work with."""
+        w, all_rows = self.work, self.n + self.m
+        steps = np.zeros(3)
+        steps[BY_PLACE] = step
+        return Balance(
+            None,
+            {"y": y.shape, "lam": (self.m,), "anchor": y.shape, "A": (all_rows, all_rows),
+             "inverse": (all_rows, all_rows), "g": (all_rows,), "x": (all_rows,),
+             "body": (10,), "slip": (len(w.rubbing),), "room": (ROOM, max(len(y), all_rows)),
+             "rates": (len(NODES), 3), "times": (len(NODES),)},
+            unit=self.unit, pressing=pressing(w), steps=steps, order=np.zeros(all_rows, np.int64),
+            moving=np.array([one[:2] for one in self.states], np.int64).reshape(-1, 2),
+            since=np.array([one[2] for one in self.states]),
+            ask=ask.address(), system=system.address(), unbalanced=unbalanced.address(),
+            write_rates=write_rates.address(), rubs=int(self.rubs),
+            timed=int(self.mechanism.timed),
+        )  # fmt: skip
 
     def driven(self) -> list[tuple[int, int, float]]:
         """States that hold the place of a drive with a velocity, its function, when that began."""
@@ -166,13 +169,40 @@ class Equations:
                     found.append((int(own.state), int(own.motion), since))
         return found
 
+    @property
+    def load(self) -> float:
+        """The largest force met, N."""
+        return float(self.record.load)
+
+    @load.setter
+    def load(self, force: float) -> None:
+        self.record.load = force
+
+    @property
+    def small(self) -> float:
+        """Of differences against t, s."""
+        return float(self.record.small)
+
+    @small.setter
+    def small(self, dt: float) -> None:
+        self.record.small = dt
+
+    @contextmanager
+    def frozen(self) -> Iterator[None]:
+        """Velocities of a state are as they are."""
+        self.record.frozen = 1.0
+        try:
+            yield
+        finally:
+            self.record.frozen = 0.0
+
     def at_time(self, y: Array, t0: float, t: float) -> Array:
         """y with the places of drives that a velocity prescribes as they are at t."""
         y, first = y.copy(), self.work.n_q + self.work.n_v
         for state, motion, since in self.states:
-            times = t0 - since + NODE * (t - t0)
+            times = t0 - since + np.array(NODES) * (t - t0)
             rates = rates_along(self.work.tab, motion, times)[:, 0]
-            y[first + state] += (t - t0) * float(WEIGHT @ rates)
+            y[first + state] += (t - t0) * float(np.array(WEIGHTS) @ rates)
         return y
 
     def moved(self, y: Array, dx: Array) -> Array:
@@ -180,79 +210,56 @@ class Equations:
         move_all(self.work, y, np.ascontiguousarray(dx))
         return y
 
+    def ways(self, before: Array, y: Array) -> tuple[Array, float]:
+        """The ways of all bodies from one state to another, along the velocities of the solve, and
+        the furthest of them, rad or of the mechanism's size."""
+        for first, last, way, far in self.known:
+            if first is before and last is y:
+                return way, far
+        way = np.zeros(self.n)
+        far = went(self.work, self.record, before, y, way)
+        self.known.appendleft((before, y, way, far))
+        return way, far
+
+    def asked(self, t: float, y: Array, lam: Array, task: int) -> bool:
+        """Do a task at a state; what it gives is in the record."""
+        b = self.record
+        b.y[:], b.lam[:], b.anchor[:] = y, lam, self.anchor
+        return bool(ask(self.work, b, t, task))
+
     def left(self, t: float, y: Array, lam: Array) -> Array:
         """g and Phi; sets the velocities of y."""
-        if not self.frozen:
-            travel(self.work, self.anchor, y, SLOW)
-        g = np.zeros(self.n + self.m)
-        unbalanced(self.work, t, y, lam, g)
-        return g
+        self.asked(t, y, lam, LEFT)
+        y[:] = self.record.y
+        return np.array(self.record.g)
 
     def matrix(self, t: float, y: Array, lam: Array) -> Array:
-        A = np.zeros((self.n + self.m, self.n + self.m))
-        self.steps[2] = LOAD * max(float(np.abs(lam).max(initial=0.0)), 1e-3 * self.load)
-        self.steps[TIME] = t
-        if self.rubs:
-            rates = y[self.work.n_q : self.work.n_q + self.n]
-            far = float(np.abs(rates / self.unit).max(initial=0.0)) / SLOW
-            part = min(max(IN_RAMP, ENOUGH * far), 0.1)
-            self.steps[BY_SPEED] = part * SLOW * RAMP * self.work.size
-        self.room[STATE, : len(y)], self.room[LOADS, : len(lam)] = y, lam
-        system(self.work, self.pressing, self.steps, self.room, A)
-        return A
+        """A of balance.py."""
+        self.asked(t, y, lam, MATRIX)
+        return self.record.A.copy()
 
     def inverse(self, A: Array) -> Array | None:
         """The inverse, rows of joints weighed like stiffnesses; None where there is none."""
-        n = self.n
-        scale = np.ones(n + self.m)
-        K = float(np.abs(A[:n, :n] * self.unit[:, None] * self.unit).max(initial=0.0))
-        scale[:n], self.stiffest = self.unit, K
-        J = float(np.abs(A[n:, :n] * self.unit).max(initial=0.0))
-        scale[n:] = max(K, 1e-300) / max(J, 1e-300) if K > 0.0 else 1.0 / max(J, 1e-300)
-        try:
-            found = np.linalg.inv(A * scale[:, None] * scale)
-        except np.linalg.LinAlgError:
-            return None
-        if not np.all(np.isfinite(found)):
-            return None
-        return np.asarray(found * scale[:, None] * scale)
+        b = self.record
+        b.A[:] = A
+        return b.inverse.copy() if ask(self.work, b, 0.0, INVERSE) else None
 
-    def solved(self, t: float, y: Array, lam: Array, inverse: Array | None) -> Any:
-        """(y, lam, way of the last step) in balance at t; None where it is not found."""
-        n, before, last, fresh = self.n, np.inf, np.inf, False
-        before_left = np.inf
-        places = float(np.abs(y[: self.work.n_q]).max(initial=0.0)) / self.work.size
-        near = max(CLOSE, ROUNDING * places)
-        for _ in range(ITERATIONS):
-            g = self.left(t, y, lam)
-            left = self.relative(g)
-            if not np.isfinite(left):
-                return None
-            if inverse is None:
-                inverse, fresh = self.inverse(self.matrix(t, y, lam)), True
-                if inverse is None:
-                    return None
-            g[n:] *= -1.0
-            x = inverse @ g
-            far = float(np.abs(x[:n] / self.unit).max(initial=0.0))
-            if not np.isfinite(far):
-                return None
-            close = far < near or (far < NEARLY and far > 0.5 * last)
-            if not fresh and (left > EXACT if close else far > CHORD * before):
-                inverse, before = None, np.inf
-                continue
-            x[:n] *= min(1.0, TURN / max(far, TURN))
-            part = self.stopped(t, y, lam, x) if len(self.work.rubbing) else 1.0
-            y, lam = self.moved(y, part * x[:n]), lam + part * x[n:]
-            noise = EPS * max(1.0, places) * self.stiffest / (self.work.size * self.load)
-            if close and (left < max(EXACT, noise) or 0.5 * before_left < left < BALANCED):
-                self.left(t, y, lam)
-                self.load = max(self.load, float(np.abs(lam).max(initial=0.0)))
-                return y, lam
-            before_left = left if close else np.inf
-            before, last, fresh = (far, far, False) if part == 1.0 else (np.inf, np.inf, False)
-            inverse = inverse if part == 1.0 else None
-        return None
+    def solved(
+        self, t: float, y: Array, lam: Array, inverse: Array | None
+    ) -> tuple[Array, Array] | None:
+        """y and lam in balance at t; None where it is not found."""
+        b, known = self.record, 0
+        b.y[:], b.lam[:], b.anchor[:] = y, lam, self.anchor
+        if inverse is not None:
+            b.inverse[:], known = inverse, 1
+        return (b.y.copy(), b.lam.copy()) if solve(self.work, b, t, known) else None
+
+    def passes_over(self, t0: float, t1: float, y: Array, lam: Array) -> bool:
+        """Whether what is asked for goes much further between two times than at both; y, lam: of
+        the second."""
+        b = self.record
+        b.y[:], b.lam[:], b.anchor[:] = y, lam, self.anchor
+        return bool(passes_over(self.work, b, t0, t1))
 
     def solved_sticking(self, t: float, y: Array, lam: Array, place: Place, slow: float) -> Any:
         """As `solved`, where what touches without sliding at a place before goes on to stick."""
@@ -286,57 +293,27 @@ class Equations:
         J = self.matrix(t, y, lam)[self.n :, : self.n]
         return least_squares((J * self.unit).T, self.left(t, y, lam)[: self.n] * self.unit, ALONE)
 
-    def relative(self, g: Array) -> float:
-        """The largest force, or moment by the size, that is left, of the largest there is."""
-        n, size = self.n, self.work.size
-        return float(np.abs(g[:n] * self.unit).max(initial=0.0)) / (size * self.load)
-
-    def stopped(self, t: float, y: Array, lam: Array, x: Array) -> float:
-        """How much of a step to take: what would turn round stops first, where it may stick."""
-        w, n = self.work, self.n
-        rows, slip = w.rubbing[:, 0], Load.columns["slip"].at
-        first = w.loads[rows, slip].copy()
-        self.left(t, self.moved(y, x[:n]), lam + x[n:])
-        last, least = w.loads[rows, slip], SLOW * RAMP * w.size
-        turned = (first * last < 0.0) & (np.minimum(np.abs(first), np.abs(last)) > least)
-        return float(np.min(first[turned] / (first - last)[turned], initial=1.0))
-
     def place(self, t: float, y: Array, lam: Array) -> Place | None:
         """What leads on from a balance: how it moves with t."""
-        w, n = self.work, self.n
-        A = self.matrix(t, y, lam)
-        inverse = self.inverse(A)
-        if inverse is None:
+        b, n = self.record, self.n
+        if not self.asked(t, y, lam, LEAD):
             return None
-        x = inverse @ self.forcing(t, y, lam)
-        return Place(t, y, lam, A, inverse, x[:n], x[n:], self.anchor) if w.n_v == n else None
+        return Place(t, y, lam, b.A.copy(), b.inverse.copy(), b.x[:n].copy(), b.x[n:].copy(),
+                     float(b.sign), self.anchor)  # fmt: skip
 
     def along_itself(self, place: Place, dt: float) -> Place:
         """A place with friction against its own velocities, not against its way in a time dt."""
         y, w = place.y.copy(), self.work
         y[w.n_q : w.n_q + self.n] = SLOW * dt * place.v
-        self.frozen = True
-        found = self.solved(place.t, y, place.lam, place.inverse)
-        there = self.place(place.t, *found) if found is not None else None
-        self.frozen = False
+        with self.frozen():
+            found = self.solved(place.t, y, place.lam, place.inverse)
+            there = self.place(place.t, *found) if found is not None else None
         return there or place
 
     def forcing(self, t: float, y: Array, lam: Array) -> Array:
         """dg/dt at one place, and -Phi_t."""
-        w, n = self.work, self.n
-        found = np.zeros(n + self.m)
-        g = np.zeros((2, n + self.m))
-        if self.mechanism.timed or self.states:
-            h = self.small
-            for k, dt in enumerate((h, -h)):
-                near = self.at_time(y, t, t + dt)
-                unbalanced(w, t + dt, near, lam, g[k])
-            found[:n] = (g[0] - g[1])[:n] / (2.0 * h)
-        unbalanced(w, t, y, lam, g[0])
-        found[n:] = -np.asarray(w.phi_t[: self.m])
-        return found
-
-    small = 1e-9  # s, of differences against t
+        self.asked(t, y, lam, FORCING)
+        return np.array(self.record.g)
 
     # --- what is held --------------------------------------------------------------------------
 

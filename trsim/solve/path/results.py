@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 from trsim.assemble.dense import least_squares
 from trsim.assemble.equations import constraints, poses
 from trsim.assemble.reduce import along_rates, less_reactions, moves, spread_out
-from trsim.elements.contract import DRIVES, FRICTION, LOADS, N_BOOK
+from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.elements.prescribed import AnyDrive
 from trsim.solve.march import record as rec
-from trsim.solve.path.balance import inertia_forces, measured_with, travel, unbalanced
-from trsim.solve.path.place import SLOW, Equations, Place
+from trsim.solve.path.extremes import take
+from trsim.solve.path.measures import added, measured_with, works
+from trsim.solve.path.place import Equations, Place
 
 Array = NDArray[np.float64]
 
@@ -52,6 +53,15 @@ class Results:
         self.energies = np.zeros(len(self.rates), bool)
         for c in mechanism.columns:
             self.energies[c.start : c.start + c.size] = c.unit == "J"
+        # by whether there is a row, and whether works are known: what has no extremes there
+        self.untold = {
+            (row, known): ((self.rates & (not row)) | (self.energies & (not known))).astype(
+                np.int64
+            )
+            for row in (False, True)
+            for known in (False, True)
+        }
+        self.full = np.zeros(w.n_out + squares)  # what was taken last, with magnitudes
         self.peak = np.zeros((rec.N_PEAK, w.n_out + squares))
         self.peak[rec.PEAK_MAX], self.peak[rec.PEAK_MIN] = -1e300, 1e300
         self.rows: list[Array] = []
@@ -116,13 +126,11 @@ class Results:
 
     def work(self, place: Place, way: Array, dt: float) -> Array:
         """Of the energy book, on a way through a place: with the forces there."""
-        w, y, n = self.w, place.y.copy(), self.eq.n
-        y[w.n_q : w.n_q + w.n_v] = SLOW * way
-        unbalanced(w, place.t, y, place.lam, np.zeros(n + self.eq.m))
-        found = np.zeros(N_BOOK)
-        found[DRIVES] = w.zd[DRIVES] * dt - float(place.lam @ (place.A[n:, :n] @ way))
-        found[LOADS], found[FRICTION] = w.zd[LOADS] / SLOW, w.zd[FRICTION] / SLOW
-        return found
+        b, book = self.eq.record, np.zeros(N_BOOK)
+        b.y[:], b.lam[:] = place.y, place.lam
+        done = works(self.w, b, place.t, way, place.A, book)
+        book[DRIVES] = book[DRIVES] * dt + done
+        return book
 
     def worked(self, place: Place) -> None:
         """Add the works since the place before, by the forces at both."""
@@ -135,9 +143,7 @@ class Results:
 
     def works_between(self, before: Place, place: Place, with_forces: Place | None = None) -> Array:
         """The works from a place to another, by the forces at both, or at the first by others."""
-        w, there = self.w, place.y.copy()
-        travel(w, before.y, there, 1.0)
-        way, dt = there[w.n_q : w.n_q + w.n_v], place.t - before.t
+        way, dt = self.eq.ways(before.y, place.y)[0], place.t - before.t
         first = self.work(with_forces or before, way, dt)
         return np.asarray(0.5 * (first + self.work(place, way, dt)))
 
@@ -166,17 +172,9 @@ class Results:
         out[-1] -= self.zero
         return out
 
-    def with_magnitudes(self, out: Array) -> Array:
-        """Channels and, behind them, the magnitudes of vectors among them."""
-        return np.array([*out, *(np.linalg.norm(out[k : k + 3]) for k in self.w.vector.tolist())])
-
     def take(self, t: float, out: Array, row: bool, known: bool = True) -> None:
         """Take the channels of one time into their extremes: rates at rows, works where known."""
-        values = self.with_magnitudes(out)
-        for k, x in ((rec.PEAK_MAX, 1.0), (rec.PEAK_MIN, -1.0)):
-            further = (x * values > x * self.peak[k]) & (row | ~self.rates)
-            further &= known | ~self.energies
-            self.peak[k, further], self.peak[k + 1, further] = values[further], t
+        take(self.w, t, out, self.untold[row, known], self.full, self.peak)
 
     def touching(self, place: Place, out: Array, closed: dict[int, bool]) -> None:
         """A line for each contact that is in."""
@@ -194,37 +192,17 @@ class Results:
         """What inertia would add to the forces of rigid drives."""
         if all(row < 0 for _, row, _ in self.drives):
             return
-        n, w = self.eq.n, self.w
-        force = np.zeros(n + self.eq.m)
-        y, speeds = place.y.copy(), slice(w.n_q, w.n_q + w.n_v)
-        y[speeds] += place.v  # what rests there rubs as on its way to the place
-        inertia_forces(w, y, a, force)
-        for f, lacking in zip(w.light.tolist(), w.lacking, strict=True):
-            self.take_back(force, y, a, (f, lacking))
-        g = np.zeros((2, n + self.eq.m))
-        unbalanced(w, place.t, y, place.lam, g[0])
-        unbalanced(w, place.t, place.y, place.lam, g[1])
-        damped = np.zeros(n + self.eq.m)
-        damped[:n] = g[0, :n] - g[1, :n]
-        inertia, dampers = place.inverse @ -force, place.inverse @ damped
-        for k, (_, row, _) in enumerate(self.drives):
+        b = self.eq.record
+        b.y[:], b.lam[:], b.inverse[:] = place.y, place.lam, place.inverse
+        b.x[: self.eq.n], b.g[: self.eq.n] = place.v, a
+        found = np.zeros((len(self.drives), 2))
+        added(self.w, b, place.t, np.array([max(row, 0) for _, row, _ in self.drives]), found)
+        for most, (_, row, _), more in zip(self.most, self.drives, found.tolist(), strict=True):
             if row < 0:
                 continue
-            for at, x in enumerate((inertia[n + row], dampers[n + row], place.lam[row])):
-                if abs(x) > self.most[k, at, 0]:
-                    self.most[k, at] = abs(x), place.t
-
-    def take_back(self, force: Array, y: Array, a: Array, light: tuple[int, Array]) -> None:
-        """Take away the inertia that a body without mass does not have."""
-        (f, more), w = light, self.w
-        o = w.d * (f - 1)
-        if w.d == 3:
-            force[o : o + 2] -= more[0] * a[o : o + 2]
-            force[o + 2] -= more[9] * a[o + 2]
-            return
-        I, omega = more[1:].reshape(3, 3), y[w.n_q + o + 3 : w.n_q + o + 6]
-        force[o : o + 3] -= more[0] * a[o : o + 3]
-        force[o + 3 : o + 6] -= I @ a[o + 3 : o + 6] + np.cross(omega, I @ omega)
+            for at, x in enumerate((*more, place.lam[row])):
+                if abs(x) > most[at, 0]:
+                    most[at] = abs(x), place.t
 
     def ratios(self, of: int = INERTIA) -> list[tuple[str, float, float]]:
         """Of every rigid drive: its name, what inertia, or dampers, would add at most, of the
