@@ -202,7 +202,7 @@ def test_the_handle_is_let_go_where_its_force_changes_its_sign():
 
 def test_the_hand_takes_over_from_the_drive():
     """Until the roller is on the guide the load put back leaves less than 1e-6 of the torque."""
-    sizes = ("solver.end=3.4", "output.every=0.2")
+    sizes = ("solver.end=3.4", "output.every=0.85")
     scenario = load(DOOR / "sizing.yaml", list(sizes))
     found = sized(scenario)
     assert found.relative[0] == 1.0 and found.relative[-1] < 1e-6
