@@ -36,6 +36,12 @@ def pytest_configure(config):
         resumed.begun(config)
 
 
+def pytest_collection_modifyitems(items):
+    """What runs tests in a process of its own comes last: what these need has been compiled by
+    then, and a further process would do once more what the functions of both have in common."""
+    items.sort(key=lambda item: "test_under_other_kernels" in item.name)
+
+
 def pytest_collection_finish():
     """What was collected lives to the end: a tenth to a sixth of the time of these tests went into
     looking it through for what nobody holds any more."""

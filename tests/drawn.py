@@ -2,6 +2,8 @@
 
 from itertools import count
 
+from matplotlib.figure import Figure
+
 from trsim.report import figures, style
 
 DOTS = 40  # an inch
@@ -23,6 +25,18 @@ def few(monkeypatch, of_each=False):
 
     monkeypatch.setattr(figures, "planned", chosen)
     coarse(monkeypatch)
+
+
+def blank(monkeypatch):
+    """From now on a figure is made and named, and what is written is an empty one: painting takes
+    two thirds of its time, and whether it can be is for tests/report."""
+
+    def picture(_figure, target):
+        Figure(figsize=(0.1, 0.1), dpi=DOTS).savefig(
+            target, format="png", metadata=style.ABOUT["png"]
+        )
+
+    monkeypatch.setattr(style, "picture", picture)
 
 
 def coarse(monkeypatch):

@@ -29,7 +29,7 @@ SCENARIOS = Path(__file__).parents[1] / "scenarios"
 FILES = ("thrust_reverser/clearance_ab_0.3mm", "validation/slider_crank_friction",
          "validation/four_bar_3d", "validation/slider_crank_3d")  # fmt: skip
 ABSURD = (1e50, -1e50, 1e45, 1e30, -1e30, 1e25, 1e12, 0.0, -1.0, 1e-12, 1e-30, 1e-160, 5e-324)
-CASES = size(30, 60)  # of each file
+CASES = size(20, 60)  # of each file
 
 
 def numbers(data, path=()):

@@ -127,7 +127,7 @@ def test_a_wedge(half, stays):
 
 
 def test_a_cam_throws_its_flat_follower_off():
-    r = go("cam_flat_contact", "output.every=1 ms")
+    r = go("cam_flat_contact", "output.every=1 ms", "solver.end=0.9")
     assert r.outcome.status in WELL and np.isfinite(r.rows).all() and energy_error(r) < 1e-4
     turn, w = 29.9 * r.t + 0.05 * r.t**2, 29.9 + 0.1 * r.t
     a, b, m, P = 0.04, 0.03, 0.3, 0.3 * 15.75
@@ -154,7 +154,7 @@ def test_a_cam_throws_its_flat_follower_off():
     )
     want = abs(w * (bend + h) - 0.5 * w * h)[on]  # along the cam, less half the sliding
     assert r["face.rolling_speed"][on] == pytest.approx(want, abs=30.0 * err)
-    assert r["face.penetration"].min() < -1e-8
+    assert r["face.penetration"].min() < -1e-8  # higher from turn to turn
 
 
 def test_a_roller_in_a_groove():

@@ -16,7 +16,7 @@ TEXT = (DOCS / "first_mechanism.md").read_text(encoding="utf-8")
 
 def test_the_page_can_be_followed(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    drawn.coarse(monkeypatch)
+    drawn.blank(monkeypatch)
     inside.sweeps(monkeypatch)
 
     def typed(words):

@@ -231,6 +231,7 @@ def test_check_finds_redundant_rows(scenario, answer):
 
 def test_show_and_report(scenario, trsim, answer, monkeypatch):
     drawn.few(monkeypatch)
+    drawn.blank(monkeypatch)
     trsim("run", "crank.yaml", "-o", "x.h5", "--set", *small.FEW)
     code, out, _ = trsim("show", "x.h5")
     assert code == 0

@@ -168,6 +168,7 @@ def good(found, folder, document, monkeypatch):
     def told(command):
         if command not in found:
             drawn.few(monkeypatch)
+            drawn.blank(monkeypatch)
             found[command] = document(command, *GOOD[command])
         return found[command]
 

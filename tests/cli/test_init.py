@@ -90,6 +90,7 @@ def test_a_sweep_is_made_shorter():
 def test_commands_can_be_typed(name, trsim, answer, monkeypatch):
     """One after the other, in the folder that was written."""
     drawn.few(monkeypatch)
+    drawn.blank(monkeypatch)
     inside.sweeps(monkeypatch)
     for command in answer("init", name)[1]["commands"]:
         code, _, err = trsim(*shorter(command))

@@ -147,6 +147,7 @@ def test_no_sweep_there(scenario, trsim):
 
 def test_bars_and_envelope(scenario, trsim, answer, within, monkeypatch):
     drawn.few(monkeypatch)
+    drawn.blank(monkeypatch)
     assert trsim("sweep", "crank.yaml", "--set", f"{B}=[0.4 mm, 0.5 mm]", *FAST)[0] == 0
     code, told = answer("report", "sw", "--bars", "peak:A.reaction", "--envelope",
                         "--at", "stroke", "--with", "motor.force,|A.reaction|")  # fmt: skip

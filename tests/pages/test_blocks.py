@@ -76,6 +76,7 @@ def test_a_page_can_be_followed(name, tmp_path, monkeypatch, capsys):
     (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")
     monkeypatch.chdir(tmp_path)
     drawn.few(monkeypatch)
+    drawn.blank(monkeypatch)
     inside.sweeps(monkeypatch)
     # a bench measures each setting from one first step, in place of three
     monkeypatch.setattr("trsim.analyse.precision.FIRST_STEPS", (1.0,))

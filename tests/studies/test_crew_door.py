@@ -1,6 +1,7 @@
 """The page of the crew door: what it speaks of is there, and what it says follows from the runs."""
 
 import csv
+import json
 import shutil
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 import yaml
 
 from tests.sweeps.test_go import here
+from trsim.api.result import Result
 from trsim.studies import STUDIES, load
 from trsim.studies.crew_door import STUDY, checks
 from trsim.studies.crew_door.side_view import LEAN, world
@@ -20,8 +22,18 @@ from trsim.sweeps.go import go
 from trsim.sweeps.plan import plan
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
+OTHER = json.loads((Path(__file__).parents[1] / "data" / "crew_door_prototype.json").read_text())
+RATES = ("opening.rate", "yoke.angular_velocity.x")
 # what is asked of the runs here: written in less time than all that the study records
-CHANNELS = ["latch_angle", "opening", "*.force", *checks.WANTED[1:]]
+CHANNELS = [
+    "latch_angle",
+    "opening",
+    "*.force",
+    "hinge.*_load",
+    "opening.rate",
+    "yoke.angular_velocity",
+    *checks.WANTED[1:],
+]
 
 
 def one(*values):
@@ -71,6 +83,8 @@ def folder(tmp_path_factory):
     whole = yaml.safe_load((place / "door.yaml").read_text())
     kept = {name: whole["cases"][name] for name in ("opened", "three_men", "wind_60kt", "running")}
     kept["running"]["sweep"] = {"parameters.foot": ["0 mm"], "parameters.stair": [1, 2, 3, 4, 5, 6]}
+    beside = {"stair": 6, "foot": "-200 mm"}
+    kept["beside"] = {"extends": "opened_man.yaml", "parameters": beside}
     # each to where the roller has met the guide
     for name, gap, end in (("path_inner", "0 mm", "3.9 s"), ("path_inner_gap", "1.3 mm", "3 s")):
         kept[name] = {
@@ -127,7 +141,55 @@ def test_numbers_are_those_of_the_runs(folder, page):
         runs.stated("three_men").channel("wire.force").max(), rel=1e-9
     )
     ended = {r["case"]: r for r in rows(page / "cases.csv")}
-    assert ended["opened"]["status"] == "done" and len(ended) == 11
+    assert ended["opened"]["status"] == "done" and len(ended) == 12
+
+
+# --- the same runs against a separate program for the same data (tests/test_crew_door.py) ------
+
+
+def case(folder, name):
+    """A run of the study."""
+    return Result(Runs(folder, STUDY.grids, STUDY.book).stated(name).file)
+
+
+def test_men_on_the_stairs(folder):
+    theirs = OTHER["running"]
+    for stair in (1, 6):
+        r = case(folder, f"running,foot=0mm,stair={stair}")
+        assert r["wire.force"][-1] == pytest.approx(theirs[f"step_{stair}"], rel=0.01)
+    r = case(folder, "beside")
+    assert r["hinge.floating_load"][-1] == pytest.approx(theirs["largest_hinge"], rel=0.01)
+    r, theirs = case(folder, "three_men"), OTHER["three_men"]
+    assert r["wire.force"][-1] == pytest.approx(theirs["wire"], rel=0.01)
+    assert r["hinge.locating_load"][-1] == pytest.approx(theirs["hinge_fwd"], rel=0.01)
+    assert r["hinge.floating_load"][-1] == pytest.approx(theirs["hinge_aft"], rel=0.01)
+
+
+def latches_at_onset(r, contact):
+    """Angles of the latch where a contact begins, deg: between two rows it turns evenly."""
+    events = r.run.events
+    begins = events.time[(events.element == contact) & (events.kind == "onset")]
+    return np.degrees(np.interp(begins, r.time, r["latch_angle"]))
+
+
+def test_first_contact_and_the_gap(folder):
+    """The roller meets the guide 5 deg of the latch earlier with a gap of 1.3 mm at Stop1."""
+    met = {}
+    for name in ("path_inner", "path_inner_gap"):
+        r = case(folder, name)
+        [met[name]] = latches_at_onset(r, "fwd_guide")
+        assert (r["wire.force"] == 0.0).all() and (r["fwd_landing.force"] == 0.0).all()
+    stop1 = case(folder, "path_inner").number("peak:fwd_stop1.normal_force")
+    assert stop1 == pytest.approx(OTHER["lifting"]["stop1"], rel=0.02)
+    assert met["path_inner"] == pytest.approx(28.0, abs=0.5)
+    assert met["path_inner"] - met["path_inner_gap"] == pytest.approx(5.0, abs=0.5)
+
+
+def test_rates_of_a_path_are_largest_in_a_row(folder):
+    """Where the roller comes to the guide, between two rows, the path has two speeds."""
+    r = case(folder, "path_inner")
+    for name in RATES:
+        assert r.number(f"peak:{name}") == pytest.approx(np.abs(r[name]).max(), rel=1e-12)
 
 
 def test_the_side_view_leans_as_the_door_does():

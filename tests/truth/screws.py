@@ -12,14 +12,13 @@ their rates,
 
 A constant, so x = N y.  Only what closes a loop (a link, or a joint between bodies that hang on
 something already) has rows that are not linear.  Reactions are sums of what the bodies behind a
-joint need.  Nothing is shared with engine.py, and nothing of trsim is used.
+joint need.  Nothing is shared with engine.py but vectors.py, and nothing of trsim is used.
 """
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy.integrate import solve_ivp
 from scipy.linalg import null_space
 
@@ -35,7 +34,9 @@ from .reference import (
     scales,
     size,
 )
-from .scene import FORCE, LENGTH, MOMENT, NONE, SPEED, Load, Scene, Spring, Torsion, plus
+from .scene import FORCE, LENGTH, MOMENT, NONE, SPEED, Load, Scene, Spring, Torsion
+from .scene import plus as dimensions
+from .vectors import compiled, cross, crossed, dot, into, minus, out_of, plus, three, times
 
 # what a joint holds where it closes a loop: displacements along, turns about axes of its triad
 HELD = {
@@ -47,69 +48,89 @@ NEXT_TO_BACK = float(np.cos(np.pi - 0.03))  # of a bend: more than trsim fails a
 ACROSS = {"u": ("w", "a"), "w": ("u", "a"), "a": ("w", "u")}  # no turn about it: these stay so
 
 
-compiled = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)
+def hat(w: Any) -> np.ndarray:
+    x, y, z = w
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 @compiled
-def cross(a, b):
-    return np.array(
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    )
+def moved(steps, c, q, R):
+    """How far drawn points are shifted by a screw that goes by q; their rotation is put into R.
+
+    steps (n, 9): twist and a point of each.
+    """
+    w, p = three(steps, c, 0), three(steps, c, 6)
+    sine, less = np.sin(q), 1.0 - np.cos(q)
+    square = dot(w, w)
+    for i in range(3):
+        for j in range(3):
+            R[i, j] = less * w[i] * w[j]
+        R[i, i] += 1.0 - less * square
+    R[0, 1] -= sine * w[2]
+    R[1, 0] += sine * w[2]
+    R[0, 2] += sine * w[1]
+    R[2, 0] -= sine * w[1]
+    R[1, 2] -= sine * w[0]
+    R[2, 1] += sine * w[0]
+    along = three(steps, c, 3)
+    if square == 0.0:
+        return times(q, along)
+    x = R[0, 0] * p[0] + R[0, 1] * p[1] + R[0, 2] * p[2]
+    y = R[1, 0] * p[0] + R[1, 1] * p[1] + R[1, 2] * p[2]
+    z = R[2, 0] * p[0] + R[2, 1] * p[1] + R[2, 2] * p[2]
+    return plus(minus(p, (x, y, z)), times(q, minus(along, cross(p, w))))
 
 
 @compiled
-def hat(w):
-    return np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])
-
-
-@compiled
-def ad(S, C):
-    """Lie bracket of two twists: the rate of C as it is carried by S."""
-    found = np.empty(6)
-    found[:3] = cross(S[:3], C[:3])
-    found[3:] = cross(S[:3], C[3:]) + cross(S[3:], C[:3])
-    return found
-
-
-@compiled
-def moved(step, q):
-    """Rotation and shift of drawn points by a screw: its twist, a point of it, how far it goes."""
-    w, p = step[:3], step[6:]
-    R = np.eye(3)
-    if not w.any():
-        return R, q * step[3:6]
-    K = hat(w)
-    R = R + np.sin(q) * K + (1.0 - np.cos(q)) * K @ K
-    advance = step[3:6] - cross(p, w)
-    return R, p - R @ p + q * advance
+def add(A, b, w, u, f):
+    """To row b of a table of twists, f of one."""
+    for i in range(3):
+        A[b, i] += f * w[i]
+        A[b, 3 + i] += f * u[i]
 
 
 @compiled
 def displaced(numbers, x, v):
     """R, s, J, V, A of every body (State); numbers: see Tree.packed."""
     before, of_step, number, steps, offset = numbers
-    n = len(before)
+    n, m = len(before), len(x)
     R, s = np.zeros((n, 3, 3)), np.zeros((n, 3))
-    J, V, A = np.zeros((n, 6, len(x))), np.zeros((n, 6)), np.zeros((n, 6))
-    R[0] = np.eye(3)
+    J, V, A = np.zeros((n, 6, m)), np.zeros((n, 6)), np.zeros((n, 6))
+    turn = np.zeros((3, 3))
+    for i in range(3):
+        R[0, i, i] = 1.0
     for b in range(1, n):
         o = before[b]
-        R[b], s[b], J[b], V[b], A[b] = R[o], s[o], J[o], V[o], A[o]
+        for i in range(3):
+            s[b, i] = s[o, i]
+            for j in range(3):
+                R[b, i, j] = R[o, i, j]
+        for i in range(6):
+            V[b, i], A[b, i] = V[o, i], A[o, i]
+            for j in range(m):
+                J[b, i, j] = J[o, i, j]
         for c in range(len(of_step)):
             if of_step[c] != b:
                 continue
-            C = np.empty(6)
-            C[:3] = R[b] @ steps[c, :3]
-            C[3:] = R[b] @ steps[c, 3:6] + cross(s[b], C[:3])
+            w = out_of(R, b, three(steps, c, 0))
+            u = plus(out_of(R, b, three(steps, c, 3)), cross(three(s, b, 0), w))
             q, k = offset[c], number[c]
             if k >= 0:
-                A[b] += ad(V[b], C) * v[k]
-                V[b] += C * v[k]
-                J[b, :, k] += C
+                # the rate of a twist as it is carried by that of the body, their Lie bracket
+                spin, slide = three(V, b, 0), three(V, b, 3)
+                add(A, b, cross(spin, w), plus(cross(spin, u), cross(slide, w)), v[k])
+                add(V, b, w, u, v[k])
+                for i in range(3):
+                    J[b, i, k] += w[i]
+                    J[b, 3 + i, k] += u[i]
                 q += x[k]
-            one, shift = moved(steps[c], q)
-            s[b] = R[b] @ shift + s[b]
-            R[b] = R[b] @ one
+            shift = out_of(R, b, moved(steps, c, q, turn))
+            for i in range(3):
+                s[b, i] += shift[i]
+                row = R[b, i, 0], R[b, i, 1], R[b, i, 2]
+                for j in range(3):
+                    column = turn[0, j], turn[1, j], turn[2, j]
+                    R[b, i, j] = dot(row, column)
     return R, s, J, V, A
 
 
@@ -120,18 +141,35 @@ def needed(found, masses):
     at, mass, inertia, gravity = masses
     n = J.shape[2]
     M, h = np.zeros((n, n)), np.zeros(n)
+    turns, goes = np.zeros((n, 3)), np.zeros((n, 3))
+    g = gravity[0], gravity[1], gravity[2]
     for b in range(1, len(J)):
-        r = R[b] @ at[b - 1] + s[b]
-        w = V[b, :3].copy()
-        turns = np.ascontiguousarray(J[b, :3])
-        goes = J[b, 3:] - hat(r) @ turns
-        u = V[b, 3:] + cross(w, r)
-        a = A[b, 3:] + cross(A[b, :3], r) + cross(w, u)
-        I = R[b] @ inertia[b - 1] @ np.ascontiguousarray(R[b].T)
-        M += mass[b - 1] * goes.T @ goes + turns.T @ I @ turns
-        h += goes.T @ (mass[b - 1] * (a - gravity))
-        h += turns.T @ (I @ A[b, :3] + cross(w, I @ w))
+        r = plus(out_of(R, b, three(at, b - 1, 0)), three(s, b, 0))
+        w, e = three(V, b, 0), three(A, b, 0)
+        u = plus(three(V, b, 3), cross(w, r))
+        a = plus(plus(three(A, b, 3), cross(e, r)), cross(w, u))
+        f = times(mass[b - 1], minus(a, g))
+        spin = heavy(R, b, inertia, w)
+        moment = plus(heavy(R, b, inertia, e), cross(w, spin))
+        for k in range(n):
+            d = J[b, 0, k], J[b, 1, k], J[b, 2, k]
+            p = minus((J[b, 3, k], J[b, 4, k], J[b, 5, k]), cross(r, d))
+            h[k] += dot(p, f) + dot(d, moment)
+            d_heavy = heavy(R, b, inertia, d)
+            for i in range(3):
+                turns[k, i], goes[k, i] = d[i], p[i]
+            for l in range(k + 1):
+                part = mass[b - 1] * dot(p, three(goes, l, 0)) + dot(d_heavy, three(turns, l, 0))
+                M[k, l] += part
+                if l != k:
+                    M[l, k] += part
     return M, h
+
+
+@compiled
+def heavy(R, b, inertia, w):
+    """The moment of momentum of body b that turns with w: its inertia is in its own axes."""
+    return out_of(R, b, out_of(inertia, b - 1, into(R, b, w)))
 
 
 @dataclass
@@ -147,13 +185,13 @@ class Step:
 
     @property
     def twist(self) -> np.ndarray:
-        return self.sign * np.concatenate([self.w, cross(self.p, self.w) + self.d])
+        return self.sign * np.concatenate([self.w, crossed(self.p, self.w) + self.d])
 
     def moved(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Rotation and shift of drawn points."""
-        return moved(
-            np.array([*self.twist, *self.p]), self.offset + (x[self.k] if self.k >= 0 else 0)
-        )
+        R, q = np.empty((3, 3)), self.offset + (x[self.k] if self.k >= 0 else 0.0)
+        shift = moved(np.array([[*self.twist, *self.p]]), 0, q, R)
+        return R, np.array(shift)
 
 
 @dataclass
@@ -209,7 +247,7 @@ def triad(joint: Any) -> dict[str, np.ndarray]:
     u = np.eye(3)[np.argmin(np.abs(a))] if x is None else np.asarray(x, float)
     u = u - (u @ a) * a
     u = u / np.linalg.norm(u)
-    return {"u": u, "w": cross(a, u), "a": a}
+    return {"u": u, "w": crossed(a, u), "a": a}
 
 
 class Tree:
@@ -328,7 +366,7 @@ class Tree:
         assert kind == "constant_velocity", kind
         # the bend b, about an axis n that goes round: turn n by psi, bend, and turn it back
         b = np.asarray(joint.second_axis, float)
-        n = cross(a, b / np.linalg.norm(b))
+        n = crossed(a, b / np.linalg.norm(b))
         bend = float(np.arctan2(np.linalg.norm(n), a @ b / np.linalg.norm(b)))
         n = n / np.linalg.norm(n)
         first, second, third = about(a), about(n), about(a)
@@ -359,13 +397,13 @@ class Tree:
         a, b = triad(one)["a"], triad(two)["a"]
         if g.type == "worm":  # a thread of so many starts across the wheel, which sees it advance
             right = -1.0 if g.hand == "left" else 1.0
-            rim = cross(b, g.touch - two.at) @ a
+            rim = crossed(b, g.touch - two.at) @ a
             lead = float(np.linalg.norm(g.touch - two.at)) * g.teeth[0] / g.teeth[1]
             return [(x, right * ways[0] * lead), (y, ways[1] * rim)]
         touch = g.touch  # where both have one speed against the carrier, along g.way
-        speed = [ways[0] * cross(a, touch - one.at) @ g.way]
+        speed = [ways[0] * crossed(a, touch - one.at) @ g.way]
         slides = two.type == "prismatic"
-        speed.append(ways[1] * (b @ g.way if slides else cross(b, touch - two.at) @ g.way))
+        speed.append(ways[1] * (b @ g.way if slides else crossed(b, touch - two.at) @ g.way))
         return [(x, speed[0]), (y, -speed[1])]
 
     # --- motion ------------------------------------------------------------------------------
@@ -388,12 +426,16 @@ class Tree:
         )  # fmt: skip
 
     @staticmethod
-    def at(state: State, p: np.ndarray) -> tuple[np.ndarray, ...]:
-        """A drawn point: its place, columns of its velocity, velocity, acceleration without x''."""
+    def met(state: State, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Place and velocity of a drawn point."""
         r = state.R @ p + state.s
+        return r, state.V[3:] + crossed(state.V[:3], r)
+
+    def at(self, state: State, p: np.ndarray) -> tuple[np.ndarray, ...]:
+        """A drawn point: its place, columns of its velocity, velocity, acceleration without x''."""
+        r, v = self.met(state, p)
         J = state.J[3:] - hat(r) @ state.J[:3]
-        v = state.V[3:] + cross(state.V[:3], r)
-        a = state.A[3:] + cross(state.A[:3], r) + cross(state.V[:3], v)
+        a = state.A[3:] + crossed(state.A[:3], r) + crossed(state.V[:3], v)
         return r, J, v, a
 
     def value(self, row: Row, of: dict[str, State]) -> tuple[float, np.ndarray, float]:
@@ -401,10 +443,10 @@ class Tree:
         i, j = of[row.i], of[row.j]
         if row.kind == "across":
             a, b = i.R @ row.a, j.R @ row.b
-            a1, b1 = cross(i.V[:3], a), cross(j.V[:3], b)
-            a2 = cross(i.A[:3], a) + cross(i.V[:3], a1)
-            b2 = cross(j.A[:3], b) + cross(j.V[:3], b1)
-            G = cross(a, b) @ i.J[:3] + cross(b, a) @ j.J[:3]
+            a1, b1 = crossed(i.V[:3], a), crossed(j.V[:3], b)
+            a2 = crossed(i.A[:3], a) + crossed(i.V[:3], a1)
+            b2 = crossed(j.A[:3], b) + crossed(j.V[:3], b1)
+            G = crossed(a, b) @ i.J[:3] + crossed(b, a) @ j.J[:3]
             return a @ b, G, a2 @ b + 2 * a1 @ b1 + a @ b2
         p, Jp, vp, ap = self.at(i, row.p)
         q, Jq, vq, aq = self.at(j, row.q)
@@ -414,9 +456,9 @@ class Tree:
             u = d / l
             return l, u @ (Jq - Jp), u @ d2 + (d1 @ d1 - (u @ d1) ** 2) / l
         a = i.R @ row.a
-        a1 = cross(i.V[:3], a)
-        a2 = cross(i.A[:3], a) + cross(i.V[:3], a1)
-        return a @ d, a @ (Jq - Jp) + cross(a, d) @ i.J[:3], a2 @ d + 2 * a1 @ d1 + a @ d2
+        a1 = crossed(i.V[:3], a)
+        a2 = crossed(i.A[:3], a) + crossed(i.V[:3], a1)
+        return a @ d, a @ (Jq - Jp) + crossed(a, d) @ i.J[:3], a2 @ d + 2 * a1 @ d1 + a @ d2
 
     def forces(self, t: float, x: Any, v: Any, of: dict[str, State]) -> Any:
         """Forces on bodies, (body, place, force, moment), and on coordinates."""
@@ -435,8 +477,7 @@ class Tree:
                 pushes.append((f.body, r, none if f.torque else size * d,
                                size * d if f.torque else none))  # fmt: skip
             elif isinstance(f, Spring):
-                p, _, vp, _ = self.at(of[f.i], f.p_i)
-                q, _, vq, _ = self.at(of[f.j], f.p_j)
+                (p, vp), (q, vq) = self.met(of[f.i], f.p_i), self.met(of[f.j], f.p_j)
                 l = np.linalg.norm(q - p)
                 u = (q - p) / l
                 free = np.linalg.norm(f.p_j - f.p_i) if f.free is None else f.free
@@ -457,8 +498,7 @@ class Tree:
         pushes, Q = self.forces(t, x, v, of)
         for name, r, f, m in pushes:
             if name != "ground":
-                at = of[name]
-                Q += (at.J[3:] - hat(r) @ at.J[:3]).T @ f + at.J[:3].T @ m
+                Q += np.concatenate([m + crossed(r, f), f]) @ of[name].J
         N = self.N
         rows = [self.value(row, of) for row in self.rows]
         G = np.array([one[1] for one in rows]).reshape(-1, self.n)
@@ -488,7 +528,7 @@ class Tree:
         made = solve_ivp(
             self.rate, (0, times[-1]), y, "DOP853", times, rtol=rtol, atol=rtol, max_step=0.2
         )
-        found = made.y.T
+        found = np.ascontiguousarray(made.y.T)  # the layout that is compiled for
         if self.folded:  # of what comes behind nothing is said
             found = np.vstack([found, np.repeat(found[-1:], len(times) - len(found), axis=0)])
         if len(found) != len(times):
@@ -548,7 +588,7 @@ class Tree:
                 value = sensor.sign * h * x[c] + sensor.at_start
                 put(sensor.name, k, value, dims, False, "place" if slides else "angle")
                 rate, kind = sensor.sign * h * v[c], "speed" if slides else "spin"
-                put(f"{sensor.name}.rate", k, rate, plus(dims, RATE), False, kind)
+                put(f"{sensor.name}.rate", k, rate, dimensions(dims, RATE), False, kind)
             if forces:
                 self.told_forces(put, k, now, x, v)
         return found
@@ -567,27 +607,27 @@ class Tree:
             r, J, _, gain = self.at(at, b.at)
             w, I = at.V[:3], at.R @ b.inertia @ at.R.T
             force = b.mass * (J @ a + gain - s.gravity)
-            moment = I @ (at.J[:3] @ a + at.A[:3]) + cross(w, I @ w) + cross(r, force)
+            moment = I @ (at.J[:3] @ a + at.A[:3]) + crossed(w, I @ w) + crossed(r, force)
             need[b.name] = [force, moment]
         need["ground"] = [np.zeros(3), np.zeros(3)]
         for name, r, f, m in pushes:
             need[name][0] = need[name][0] - f
-            need[name][1] = need[name][1] - cross(r, f) - m
+            need[name][1] = need[name][1] - crossed(r, f) - m
         told: dict[str, list[np.ndarray]] = {}
         for row, l in zip(self.rows, lam, strict=True):
             i, j = of[row.i], of[row.j]
             p, q = i.R @ row.p + i.s, j.R @ row.q + j.s
             if row.kind == "across":
-                f, m = np.zeros(3), l * cross(j.R @ row.b, i.R @ row.a)
+                f, m = np.zeros(3), l * crossed(j.R @ row.b, i.R @ row.a)
             else:
                 d = q - p
                 f = l * (d / np.linalg.norm(d) if row.kind == "distance" else i.R @ row.a)
                 m = np.zeros(3)
             # on j at its point; the opposite, with the same line of action, on i
             need[row.j][0] = need[row.j][0] - f
-            need[row.j][1] = need[row.j][1] - cross(q, f) - m
+            need[row.j][1] = need[row.j][1] - crossed(q, f) - m
             need[row.i][0] = need[row.i][0] + f
-            need[row.i][1] = need[row.i][1] + cross(q, f) + m
+            need[row.i][1] = need[row.i][1] + crossed(q, f) + m
             one = told.setdefault(row.name, [np.zeros(3), np.zeros(3)])
             one[0], one[1] = one[0] + f, one[1] + m
             if row.kind == "distance":
@@ -611,16 +651,16 @@ class Tree:
             rest_f, rest_m = f.copy(), m.copy()
             for step in held.steps:
                 w = R @ step.twist[:3]
-                C = np.concatenate([w, R @ step.twist[3:] + cross(shift, w)])
+                C = np.concatenate([w, R @ step.twist[3:] + crossed(shift, w)])
                 if step.k >= 0 and Q[step.k]:
                     if w.any():
                         rest_m = rest_m - Q[step.k] * C[:3]
                     else:
                         rest_f = rest_f - Q[step.k] * C[3:]
-                        rest_m = rest_m - cross(p, Q[step.k] * C[3:])
+                        rest_m = rest_m - crossed(p, Q[step.k] * C[3:])
                 one, part = step.moved(x)
                 R, shift = R @ one, R @ part + shift
-            told[j.name] = [way * rest_f, way * (rest_m - cross(p, rest_f))]
+            told[j.name] = [way * rest_f, way * (rest_m - crossed(p, rest_f))]
         for j in s.joints:
             if j.name in told:
                 put(f"{j.name}.reaction", k, told[j.name][0], FORCE, True, "force")
