@@ -8,6 +8,7 @@ from trsim.api.hearing import Listener
 from trsim.api.running import placed
 from trsim.api.source import Given, Sets, called, loaded, settings
 from trsim.api.stop import listening
+from trsim.api.threads import one_thread
 from trsim.errors import TrsimError
 
 FACTS = (  # of a mechanism, that are told under their names
@@ -52,7 +53,7 @@ def check(scenario: Given, set: Sets | None = None, modes: bool = False) -> Chec
 
     Raises ScenarioError, ModelError, FileError.
     """
-    with listening():
+    with listening(), one_thread():
         return checked(Listener(), scenario, settings(set), modes)
 
 

@@ -11,6 +11,7 @@ from trsim.api.result import Result
 from trsim.api.running import Wanted, ran
 from trsim.api.source import Given, Sets, called, loaded, must_end, settings, stem
 from trsim.api.stop import listening
+from trsim.api.threads import one_thread
 from trsim.errors import SolverError, UsageError
 from trsim.statuses import ILL
 
@@ -59,7 +60,7 @@ def run(
     hears = Listener()
     hears.command = told(scenario, output, set, options)
     hears.again = told(scenario, output, set, {**options, "resume": True})
-    with listening():
+    with listening(), one_thread():
         summary = made(hears, Work(scenario, target, wanted(settings(set), **options)))
     for text in summary["warnings"]:
         hears.warn(called(scenario), text)
