@@ -107,7 +107,7 @@ def of_channels(run: Run) -> dict[str, list[float]]:
             contact, _, own = channel.rpartition(".")
             touch = steps.get(contact, {}).get(own)  # values at the accepted steps in touch
             if touch is not None:
-                touch = touch.reshape(len(touch), -1)
+                touch = touch.reshape(len(touch), run.sizes[channel])  # none: it never touched
                 peak[columns] = np.fmax(peak[columns], _largest(touch))
                 least[columns] = np.fmin(least[columns], -_largest(-touch))
         for name, of_rows, high, low in zip(names, means.T.tolist(), peak, least, strict=True):
