@@ -1,7 +1,8 @@
 """A workbook of one sheet (Office Open XML), written block by block, numbers in full.
 
 The same rows give the same bytes.  A number that is missing is an empty cell, one that is infinite
-the error #NUM!.
+the error #NUM!.  openpyxl and XlsxWriter write 16 digits of a number, and 17 are needed to read the
+same one again; so this small part of the format is written here.
 """
 
 import math
