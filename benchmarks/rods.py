@@ -15,13 +15,13 @@ import numpy as np
 from benchmarks.measure import SCENARIOS, Run, run
 from benchmarks.tables import head, row
 
-RODS = (
-    "rigid_rod_0.5kg",
-    "flexible_rod_mass_matched",
-    "rigid_rod_3.454kg",
-    "flexible_rod_paper_damped",
-    "flexible_rod_paper",
-)
+WORDS = {
+    "rigid_rod_0.5kg": "rigid 0.5 kg",
+    "flexible_rod_mass_matched": "flexible, 0.5 kg",
+    "rigid_rod_3.454kg": "rigid 3.454 kg",
+    "flexible_rod_paper_damped": "flexible, 3.454 kg, damped",
+    "flexible_rod_paper": "flexible, 3.454 kg",
+}
 PINS = ("A", "B", "Q")
 CLEARANCES = (0.294, 0.297, 0.3, 0.303, 0.306)  # mm
 FROM, UNTIL = 0.3, 0.98  # s
@@ -96,7 +96,7 @@ def main() -> None:
     head("0.3 mm at", "rod", *(q.name for q in QUANTITIES), "CPU s")
     for pin in PINS:
         angles: list[Any] = []
-        for rod in RODS:
+        for rod in WORDS:
             several, cpu = runs(rod, pin)
             angles = angles or [r.channel("door_angle") for r in several]
             cells = []
@@ -104,9 +104,10 @@ def main() -> None:
                 values = [q.of(r, pin, a) for r, a in zip(several, angles, strict=True)]
                 half = 0.5 * (max(values) - min(values))
                 mean = float(np.mean(values))
-                told = f"{mean:{q.form}}"
-                cells.append(told if half < NARROW * mean else f"{told} +- {half:{q.form}}")
-            row(pin, rod, *cells, f"{cpu:.2f}")
+                told, apart = f"{mean:{q.form}}", f"{half:{q.form}}"
+                wide = half > NARROW * mean and float(apart) > 0.0
+                cells.append(f"{told} +- {apart}" if wide else told)
+            row(pin, WORDS[rod], *cells, f"{cpu:.2f}")
 
 
 if __name__ == "__main__":
