@@ -10,6 +10,7 @@ import numpy as np
 from benchmarks.tables import head, power, row
 from tests.runs import run
 from tests.solve.test_beams_at_rest import ROOTS, known, stretching, under, vibrations
+from tests.solve.test_beams_moving import ahead
 from tests.test_scenarios import VALIDATION
 from trsim.scenario.load import load
 
@@ -64,10 +65,8 @@ def frequencies() -> None:
 def spun(*sets: str) -> tuple[float, float, float]:
     """Largest lag, shortest, and mean lengthening after 16 s of the tip, m."""
     r = run(SPIN_UP, *sets)
-    along, across = np.cos(r["turned"]), np.sin(r["turned"])
-    x, y = r["bar.tip"][:, 0], r["bar.tip"][:, 1]
-    longer, ahead = along * x + across * y - 10.0, along * y - across * x
-    return -ahead.min(), longer.min(), longer[r.t > 16].mean()
+    longer, forwards = ahead(r)
+    return -forwards.min(), longer.min(), longer[r.t > 16].mean()
 
 
 def spin_up() -> None:

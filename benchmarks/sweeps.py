@@ -28,6 +28,11 @@ def timed(*arguments: str) -> tuple[float, dict]:
     return time.perf_counter() - began, json.loads(done.stdout)
 
 
+def counted(told: dict) -> str:
+    """How many cases have which status."""
+    return ", ".join(f"{count} {status}" for status, count in told["counts"].items())
+
+
 def grid(n: int, m: int) -> tuple[str, ...]:
     return ("--set", f"{A}=lin(0.1 mm, 0.5 mm, {n})", "--set", f"{B}=lin(0.1 mm, 0.5 mm, {m})")
 
@@ -38,7 +43,7 @@ def main() -> None:
         timed("run", SCENARIO, *FAST, "-o", str(Path(folder) / "warm.h5"))
         whole = ("sweep", SCENARIO, *grid(20, 10), "-o", str(Path(folder) / "whole"))
         seconds, told = timed(*whole)
-        row("200 cases of 1 s, 10 001 rows each", "4 min", f"{seconds:.0f} s, {told['counts']}")
+        row("200 cases of 1 s, 10 001 rows each", "4 min", f"{seconds:.0f} s, {counted(told)}")
         seconds, told = timed(*whole)
         row("the same again", "2 s", f"{seconds:.2f} s, {told['ran']} run")
         seconds, _ = timed("status", str(Path(folder) / "whole"))
@@ -50,8 +55,8 @@ def main() -> None:
             seconds, _ = timed("sweep", SCENARIO, *part, *out)
             alone = alone or seconds
             count = min(jobs, processors())
-            told = f"efficiency {alone / seconds / count:.2f} on {count} processors"
-            row(f"40 short cases, {jobs} workers", "0.85", f"{seconds:.1f} s, {told}")
+            told = f"efficiency {alone / seconds / count:.2f}"
+            row(f"40 short cases, workers: {jobs}", "0.85", f"{seconds:.1f} s, {told}")
         out = ("-o", f"{folder}/plan")
         seconds, told = timed("sweep", SCENARIO, *grid(100, 100), "--explain", "--shard",
                               "1/10000", *FAST, *out)  # fmt: skip

@@ -132,5 +132,6 @@ def test_a_file_beside_it_was_meant(tmp_path):
     assert told.what.endswith("no such file")
     assert told.hint == f"Did you mean {tmp_path / 'four_bar.yaml'}?"
     assert unreadable(tmp_path / "door.yaml").hint == ""
+    assert unreadable(tmp_path / "crame.h5").hint == ""  # crane.yaml is of another kind
     assert unreadable(tmp_path / "none" / "four-bar.yaml").hint == ""
     assert unreadable(tmp_path / "four_bar.yaml") is None

@@ -90,7 +90,7 @@ MADE: dict[str, Made] = {
     "works": scenes("works", "solve/test_works"),
     "kinematic": scenes("kinematic", "solve/test_kinematic_counts"),
     "symmetry": bench("symmetry", "tests/linkages.py", *REVERSER, way="tables", asked=""),
-    "beams": scenes("beams", "solve/test_beams_at_rest"),
+    "beams": scenes("beams", "solve/test_beams_at_rest", "solve/test_beams_moving"),
     "lyapunov": Made(
         "python -m benchmarks lyapunov",
         ("benchmarks/lyapunov.py", "tests/analyse/series.py", "trsim/analyse/lyapunov.py",

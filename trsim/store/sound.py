@@ -186,8 +186,8 @@ def _own(value: Any) -> Any:
     """The value of an attribute as Python's own; a text of fixed length stays one of bytes."""
     if type(value) is bytes:
         return value.decode("utf-8", "surrogateescape")
-    alone = isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.shape == ())
-    return value.item() if alone else value
+    single = isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.shape == ())
+    return value.item() if single else value
 
 
 def _links(group: h5g.GroupID) -> list[tuple[bytes, int, int]]:
