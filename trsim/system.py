@@ -30,6 +30,8 @@ OPENS_FOLDERS = os.open in os.supports_dir_fd  # and names files from there
 MEMORY_NOW = "/proc/self/statm"  # pages, of Linux
 LIMITS_MEMORY = resource is not None and os.path.exists(MEMORY_NOW)
 PR_SET_PDEATHSIG = 1  # of prctl(2)
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # of mallopt(3)
+KEPT = 1 << 30  # bytes: of larger arrays nothing is kept
 
 
 def processors() -> int:
@@ -81,6 +83,20 @@ def limit_memory(more: int) -> None:
     with open(MEMORY_NOW, encoding="ascii") as file:
         has = int(file.read().split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (has + more, has + more))
+
+
+def keep_memory() -> None:
+    """Have the C library keep what is freed for the next arrays; glibc alone can.
+
+    Otherwise each large array is memory that the system must find and clear anew.
+    """
+    if sys.platform == "linux":
+        import ctypes
+
+        library = ctypes.CDLL(None)
+        if hasattr(library, "mallopt"):
+            library.mallopt(M_MMAP_THRESHOLD, KEPT)
+            library.mallopt(M_TRIM_THRESHOLD, KEPT)
 
 
 def end_with_parent() -> None:

@@ -18,7 +18,7 @@ all ask here.  A word is KIND:OF, and @WINDOW behind it where only a stretch of 
     summary:KEY          of the summary: time, rows, contacts.B.peak_force; solver:KEY: steps ...
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
@@ -168,8 +168,14 @@ def _count(run: Run, name: str, within: Window, _: bool) -> Number:
     return float(np.count_nonzero(_points(run, name, within)[1])), "-"
 
 
-def _of_shares(field: str, unit: str, run: Run, joint: str, within: Window, _: bool) -> Number:
-    return float(getattr(shares(run, joint, within), field)), unit
+def of_shares(run: Run, joint: str, within: Window, words: Iterable[str]) -> list[float]:
+    """The numbers of a contact that these words of OF_SHARES name."""
+    found = shares(run, joint, within)
+    return [float(getattr(found, OF_SHARES[word][0])) for word in words]
+
+
+def _of_shares(word: str, run: Run, joint: str, within: Window, _: bool) -> Number:
+    return of_shares(run, joint, within, [word])[0], OF_SHARES[word][1]
 
 
 # --- of the file -----------------------------------------------------------------------------
@@ -204,7 +210,9 @@ def _unit_of(run: Run, path: str) -> str:
     return own if key == "peak_force" else f"{own}/s"
 
 
-SHARES = ("flight", "contact", "following", "impacts", "onsets")
+# what shares.py calls them, and their units
+OF_SHARES = {word: (word, "-") for word in ("flight", "contact", "following", "impacts", "onsets")}
+OF_SHARES["between"] = "mean_between", "s"
 WHOLE = ("summary", "solver")
 MEANT = {"max": "peak", "maximum": "peak", "min": "least", "minimum": "least", "average": "mean",
          "end": "final", "last": "final"}  # fmt: skip
@@ -219,9 +227,8 @@ KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
     "final": partial(_of_rows, lambda x: x[-1]),
     "dispersion": _dispersion,
     "points": _count,
-    **{word: partial(_of_shares, word, "-") for word in SHARES},
-    "between": partial(_of_shares, "mean_between", "s"),
+    **{word: partial(_of_shares, word) for word in OF_SHARES},
     **{group: partial(_kept, group) for group in WHOLE},
 }
 # of what the solver located: the output rows have no say
-LOCATED = ("dispersion", "points", *SHARES, "between")
+LOCATED = ("dispersion", "points", *OF_SHARES)

@@ -63,6 +63,12 @@ class Impacts:
 # --- before the first row --------------------------------------------------------------------
 
 
+def expected(scenario: Any) -> int:
+    """How many rows a run may have; of one that has a row for each step nobody knows."""
+    end, every = scenario.solver.end or 0.0, scenario.output.every
+    return int(min(end / every if every else 1000, 1e9)) + 1
+
+
 def begin(book: Book) -> None:
     """Attributes and groups of a file whose run is about to start."""
     told = {"format_version": VERSION, "format": FORMAT, "status": "running", "reason": ""}

@@ -207,9 +207,8 @@ class Running:
         time_field = Field("time", "s", "simulated time", 0)
         fields = [Field(c.name, c.unit, c.meaning, 1 + c.start, c.size) for c in columns]
         width = 1 + max((c.start + c.size for c in self.mechanism.columns), default=0)
-        solver, output = self.scenario.solver, self.scenario.output
-        expected = int(min((solver.end or 0.0) / output.every if output.every else 1000, 1e9)) + 1
-        self.rows = Growing(book, "", [time_field, *fields], (width, expected))
+        rows = width, describe.expected(self.scenario)
+        self.rows = Growing(book, "", [time_field, *fields], rows)
         describe.flag(book, self.mechanism)
         self.contacts = {
             e: tables.steps(book, instance, time_field)

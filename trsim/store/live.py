@@ -19,30 +19,31 @@ from trsim.store.grow import Field
 from trsim.store.points import Points
 from trsim.store.read import Events, Run
 
+LEAST = 64  # lines that there is room for
+MOST = 1 << 22  # numbers of rows that room is made for beforehand
+
 
 class Gathered:
-    """Blocks, as they come."""
+    """Lines of blocks, as they come, one column behind the other in memory."""
 
-    def __init__(self, width: int) -> None:
-        self.parts: list[Array] = []
-        self.width = width
-
-    @property
-    def n(self) -> int:
-        return sum(map(len, self.parts))
+    def __init__(self, width: int, expected: int = 0) -> None:
+        """expected: how many there will be, where that is known."""
+        self.lines = np.empty((expected, width), order="F")
+        self.n = 0
 
     def append(self, lines: Array) -> None:
         """Take lines (n, width), which are the solver's again afterwards."""
-        if len(lines):
-            self.parts.append(lines.copy())
+        n = self.n + len(lines)
+        if n > len(self.lines):
+            kept = self.whole()
+            self.lines = np.empty((max(n, 2 * len(kept), LEAST), lines.shape[1]), order="F")
+            self.lines[: self.n] = kept
+        self.lines[self.n : n] = lines
+        self.n = n
 
     def whole(self) -> Array:
-        """All of them, one column behind the other in memory."""
-        found, n = np.empty((self.n, self.width), order="F"), 0
-        for part in self.parts:  # a block fits the cache; all at once would take ten times as long
-            found[n : n + len(part)] = part
-            n += len(part)
-        return found
+        """All of them."""
+        return self.lines[: self.n]
 
 
 def columns_of(lines: Array, start: int, size: int) -> Array:
@@ -111,11 +112,11 @@ class Taking:
     def __init__(self, path: Path, scenario: Any, mechanism: Any) -> None:
         self.path, self.scenario, self.mechanism = path, scenario, mechanism
         self.planned = points.plan(scenario, mechanism)
-        self.rows = Gathered(1 + max((c.start + c.size for c in mechanism.columns), default=0))
+        width = 1 + max((c.start + c.size for c in mechanism.columns), default=0)
+        self.rows = Gathered(width, min(describe.expected(scenario), MOST // width))
         self.touches = tables.Touches(mechanism)
         self.contacts = {e: Gathered(width) for e, width in self.touches.width.items()}
         self.events, self.points = Gathered(tables.EVENT_COLUMNS), Gathered(4)
-        self.magnitudes = peaks.Magnitudes(mechanism.columns)
         self.impacts = describe.Impacts(len(mechanism.instances))
         self.time = 0.0
 
@@ -135,8 +136,6 @@ class Taking:
 
     def take(self, block: Any) -> None:
         self.rows.append(block.rows)
-        if len(block.rows):
-            self.magnitudes.update(block.rows)
         self.touches.take(block.steps, self.contacts, self.impacts)
         self.events.append(block.events)
         self.impacts.update(block.events)
@@ -149,8 +148,12 @@ class Taking:
         wanted = [c for c in mechanism.columns if c.wanted or c.name in self.planned.columns]
         columns = {"time": rows[:, 0]}
         columns |= {c.name: columns_of(rows, 1 + c.start, c.size) for c in wanted}
-        extremes = None if outcome is None else outcome.peaks
-        found = peaks.table(mechanism, extremes, self.magnitudes)
+        extremes, magnitudes = None, peaks.Magnitudes(mechanism.columns)
+        if outcome is not None:
+            extremes = outcome.peaks
+        if extremes is None and len(rows):
+            magnitudes.update(rows)
+        found = peaks.table(mechanism, extremes, magnitudes)
         if "stroke" in columns:
             found = peaks.at_strokes(found, columns["time"], columns["stroke"])
         told = describe.summary(self, self.scenario.title, status, reason, outcome, found)

@@ -30,7 +30,7 @@ import numpy as np
 
 from trsim.analyse.extremes import LARGEST, MAGNITUDE, SMALLEST
 from trsim.analyse.fluctuation import shows
-from trsim.analyse.outputs import KINDS, SHARES, scalar
+from trsim.analyse.outputs import OF_SHARES, of_shares, scalar
 from trsim.analyse.window import Window, window
 from trsim.arrays import Array
 from trsim.errors import TrsimError, UsageError
@@ -42,11 +42,11 @@ from trsim.store.read import Events, Part, Run
 EVENTS, POINTS = 1000, 2000  # that are kept of a case, of a section
 OF_CHANNELS = ("mean", "rms", "std", "final", "peak", "least", "range")
 OF_ROWS = (*OF_CHANNELS, "fluctuation")
-OF_CONTACTS = (*SHARES, "between")
+OF_CONTACTS = tuple(OF_SHARES)
 # what tells records of this form from those of another one
 EVERY = ("form 1", *OF_CHANNELS, *OF_CONTACTS, str(EVENTS), str(POINTS))
 LEVEL = 6  # of gzip: records are many
-AT_ONCE = 1 << 20  # values of channels that are looked at together
+AT_ONCE = 1 << 16  # values of channels that are looked at together: they stay in the cache
 
 
 def record(run: Run, asked: Iterable[str] = ()) -> dict[str, Any]:
@@ -63,8 +63,7 @@ def record(run: Run, asked: Iterable[str] = ()) -> dict[str, Any]:
         "sizes": {name: size for name, size in run.sizes.items() if size != 1},
         "channels": of_channels(run) if run.rows else {},
         "contacts": {
-            name: [KINDS[word](run, name, whole, False)[0] for word in OF_CONTACTS]
-            for name in run.contacts
+            name: of_shares(run, name, whole, OF_CONTACTS) for name in run.contacts
         } if run.rows else {},
         "asked": {word: list(number(run, word)) for word in (*usual(run), *asked)},
         "peaks": [list(peak) for peak in run.peaks],

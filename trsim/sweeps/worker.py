@@ -14,7 +14,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from trsim.system import end_with_parent, limit_memory
+from trsim.system import end_with_parent, keep_memory, limit_memory
 
 JOB = "trsim.sweeps.job:run"
 MEMORY = "the memory allowed for a case may have been used up"
@@ -23,6 +23,7 @@ MEMORY = "the memory allowed for a case may have been used up"
 def main(memory: int, job: str) -> None:
     """Work until there are no more tasks."""
     end_with_parent()
+    keep_memory()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8", newline="\n")
     os.dup2(2, 1)  # whatever else is printed is no reply
