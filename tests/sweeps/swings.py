@@ -1,6 +1,5 @@
 """A pendulum let go at rest, as a worker's job without a solver: it does not swing any higher."""
 
-import json
 
 from trsim.sweeps.summary import sent
 
@@ -8,7 +7,7 @@ from trsim.sweeps.summary import sent
 def run(task, begun):
     """The record of a run whose only channel is the angle: its peak is where it began."""
     begun()
-    given = json.loads(task["resolved"])["parameters"]
+    given = task["resolved"]["parameters"]
     start, unit = float(given["start"]), "rad"
     none = "no channel named 'angel'"
     told = {

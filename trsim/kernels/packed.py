@@ -18,7 +18,7 @@ import math
 from array import array
 from collections import Counter
 from ctypes import addressof, c_double
-from functools import cache
+from functools import cache, lru_cache
 from operator import setitem
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -72,6 +72,7 @@ __all__ = [
 ]  # fmt: skip
 
 WORDS = 3  # per field
+SHAPES = 256  # of records that are remembered
 LINE = 8  # words: where one array ends and the next begins, there is a new line of the cache
 EMPTY = c_double()
 NOWHERE = addressof(EMPTY)  # where arrays without entries are
@@ -91,8 +92,7 @@ class Packed:
     sizes: Counter[str]  # of the arrays that numbers which change are entries of
     words: NDArray[np.int64]  # what compiled code reads
     address: int  # where they begin
-    # arrays of zeros Python has not asked for: the piece they lie in, from where to where, shape
-    _zeros: dict[str, tuple[Any, int, int, tuple[int, ...]]]
+    _zeros: tuple[tuple[Any, _Room], ...]  # pieces of memory with arrays of zeros; later ones count
 
     def __init_subclass__(cls) -> None:
         own = {k: v for k, v in vars(cls).get("__annotations__", {}).items() if k != "kind"}
@@ -121,7 +121,7 @@ class Packed:
 
         places, own = self.places.keys(), vars(self)
         words = array("q", bytes(8 * WORDS * len(places)))
-        own["_zeros"] = {}
+        own["_zeros"] = ()
         wrong: Any = {*(room or ()), *values} - places
         if not wrong:
             if like is not None:
@@ -132,7 +132,8 @@ class Packed:
                 self._make(room, words)
             self._take(values, words)
             if type(like) is not type(self):
-                wrong = places - own.keys() - self._zeros.keys()
+                wrong = places - own.keys()
+                wrong = wrong.difference(*(room.lies for _, room in self._zeros))
         if wrong:
             raise TypeError(f"{type(self).__name__}: fields {sorted(wrong)} missing or unknown")
         own["words"] = np.frombuffer(words, np.int64)
@@ -140,12 +141,12 @@ class Packed:
 
     def __getattr__(self, name: str) -> Any:
         """A view of an array of zeros, made when Python first asks for it, as it does for few."""
-        try:
-            piece, begin, end, shape = vars(self)["_zeros"][name]
-        except KeyError:
-            raise AttributeError(f"{type(self).__name__} has no '{name}'") from None
-        view = vars(self)[name] = piece[begin:end].reshape(shape)
-        return view
+        for piece, room in reversed(vars(self).get("_zeros", ())):
+            if name in room.lies:
+                begin, end, shape = room.lies[name]
+                view = vars(self)[name] = piece[begin:end].reshape(shape)
+                return view
+        raise AttributeError(f"{type(self).__name__} has no '{name}'")
 
     def _share(self, like: Packed, words: array[int]) -> None:
         """The first fields, as another record has them."""
@@ -153,7 +154,6 @@ class Packed:
         words[: WORDS * number] = array("q", like.words[: WORDS * number].tobytes())
         if number == len(like.places):
             own |= vars(like)
-            own["_zeros"] = {**like._zeros}
             return
         for name in itertools.islice(self.places, number):
             own[name] = getattr(like, name)
@@ -162,15 +162,15 @@ class Packed:
         """Arrays of zeros."""
         import numpy as np
 
-        sizes = [math.prod(shape) for shape in room.values()]
-        ends = [0, *itertools.accumulate(LINE * -(-size // LINE) for size in sizes)]
         record: Any = type(self)
-        piece = np.zeros(ends[-1])
-        start, fields, own, zeros = address(piece), _fields(record), vars(self), self._zeros
-        for (name, shape), size, begin in zip(room.items(), sizes, ends, strict=False):
-            own.pop(name, None)
-            zeros[name] = piece, begin, begin + size, shape
-            _tell(words, fields[name], start + 8 * begin, shape)
+        made = _room(record, tuple(room.items()))
+        piece, own = np.zeros(made.size), vars(self)
+        for name in own.keys() & made.lies.keys():
+            del own[name]
+        own["_zeros"] = (*self._zeros, (piece, made))
+        told = np.frombuffer(words, np.int64)
+        told[made.starts] = address(piece) + made.behind
+        told[made.places] = made.numbers
 
     def _take(self, values: dict[str, Any], words: array[int]) -> None:
         """Fields that are given."""
@@ -235,6 +235,37 @@ def _fields(record: Any) -> dict[str, _Field]:
         )
         for k, (name, kind) in enumerate(record.kind.fields)
     }  # fmt: skip
+
+
+class _Room(NamedTuple):
+    """Where arrays of zeros lie in one piece of memory, and what tells of them."""
+
+    size: int  # of the piece
+    lies: dict[str, tuple[int, int, tuple[int, ...]]]  # name -> from where, to where, shape
+    starts: NDArray[np.int64]  # words of the record with their addresses
+    behind: NDArray[np.int64]  # bytes from the beginning of the piece to each
+    places: NDArray[np.int64]  # words of the record with their shapes
+    numbers: NDArray[np.int64]
+
+
+@lru_cache(SHAPES)
+def _room(record: Any, shapes: tuple[tuple[str, tuple[int, ...]], ...]) -> _Room:
+    """Of a class of records; looked up once: records of the same shapes are made by the hundred."""
+    import numpy as np
+
+    lies, begin, words = dict[str, tuple[int, int, tuple[int, ...]]](), 0, dict[int, int]()
+    fields = _fields(record)
+    for name, shape in shapes:
+        end = begin + math.prod(shape)
+        lies[name] = begin, end, shape
+        one = array("q", bytes(8 * WORDS))
+        _tell(one, fields[name]._replace(word=0), 8 * begin, shape)
+        words |= {fields[name].word + k: number for k, number in enumerate(one)}
+        begin += LINE * -(-(end - begin) // LINE)
+    starts = [fields[name].word for name, _ in shapes]
+    behind = [words.pop(word) for word in starts]
+    given = (starts, behind, list(words), list(words.values()))
+    return _Room(begin, lies, *(np.array(one, np.int64) for one in given))
 
 
 def _tell(words: array[int], field: _Field, start: int, shape: tuple[int, ...]) -> None:

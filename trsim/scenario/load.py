@@ -37,6 +37,12 @@ def loads(
     return of_tree(expand.expand_text(text, sets, name, folder), text)
 
 
+def of_data(data: dict) -> Scenario:
+    """The scenario of data that are complete and were read before, such as those of a case: what
+    is wrong with it has no place in a file."""
+    return of_tree(Tree(data), "")
+
+
 def valid(data: dict, memory: Memory) -> bool:
     """Whether the data of a tree, with good names, make a scenario; what of it was seen is known.
 

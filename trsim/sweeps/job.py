@@ -1,6 +1,5 @@
 """One case: its scenario run into its result file, in the process that calls."""
 
-import json
 import time
 from collections.abc import Callable, Generator
 from contextlib import suppress
@@ -33,7 +32,7 @@ def prepare() -> None:
 def run(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
     """How a case ended: status, reason, summary.
 
-    task: `resolved`, the scenario as JSON; `text` and `files`, what it was read from; `target`;
+    task: `resolved`, the data of the scenario; `text` and `files`, what it was read from; `target`;
     `digest` of the case.  begun: called when the first results are there, so compiling is over.
     """
     clock = time.perf_counter()
@@ -68,12 +67,12 @@ def brief(summary: dict[str, Any]) -> dict[str, Any]:
 
 def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
     from trsim.assemble.assemble import assemble
-    from trsim.scenario.load import loads
+    from trsim.scenario.load import of_data
     from trsim.solve.simulate import simulate
     from trsim.store.hdf5 import Around, write
 
     target = Path(task["target"])
-    scenario = loads(task["resolved"], (), f"{task['name']}/resolved")
+    scenario = of_data(task["resolved"])
     scenario._text = task["text"]
     scenario._tree.files = dict(task["files"])
     passes = ""
@@ -179,7 +178,7 @@ def task(case: Any, plan: Any, target: Path) -> dict[str, Any]:
     """What `run` needs to know of a case; JSON can hold it."""
     return {
         "name": case.name,
-        "resolved": json.dumps(case.data),
+        "resolved": case.data,
         "text": plan.text,
         "files": plan.files,
         "target": str(target),

@@ -45,7 +45,7 @@ OF_ROWS = (*OF_CHANNELS, "fluctuation")
 OF_CONTACTS = tuple(OF_SHARES)
 # what tells records of this form from those of another one
 EVERY = ("form 1", *OF_CHANNELS, *OF_CONTACTS, str(EVENTS), str(POINTS))
-LEVEL = 6  # of gzip: records are many
+LEVEL = 3  # of gzip: half the time of level 6 for 6 % more
 AT_ONCE = 1 << 16  # values of channels that are looked at together: they stay in the cache
 
 

@@ -99,16 +99,15 @@ def take(r, b):
     at = r.sampled[r.newest]
     for k in range(1, n):
         inverse[k] = 1.0 / (at - r.sampled[older(r, k)])
-    d, before = r.slope, b.bound[0]
-    for c in range(now.size):
-        before[c] = d[0, c]
-        d[0, c] = now[c]
+    d, before, kept = r.slope, b.bound[0], b.bound[1]
+    copy_to(before, d[0])
+    copy_to(d[0], now)
     for k in range(1, n):
         above, row, by = d[k - 1], d[k], inverse[k]
+        copy_to(kept, row)  # one loop for both would not take several channels at a time
         for c in range(now.size):
-            old = row[c]
             row[c] = (above[c] - before[c]) * by
-            before[c] = old
+        before, kept = kept, before
 
 
 @internal
@@ -228,8 +227,11 @@ def known_extremes(s, r, b, t):
         return
     for c in range(full.size):
         extreme(r, c, t, full[c], b.firm[0])
-    for k in range(s.kin.size):
-        r.largest[s.kin[k]] = max(r.largest[s.kin[k]], s.lever[k] * abs(full[s.sought[k]]))
+    largest, kin, lever, sought = r.largest, s.kin, s.lever, s.sought
+    for k in range(kin.size):
+        size = lever[k] * abs(full[sought[k]])
+        if size > largest[kin[k]]:  # rarely: to write it in any case makes the next one wait
+            largest[kin[k]] = size
 
 
 @internal
