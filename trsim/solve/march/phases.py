@@ -150,6 +150,6 @@ def settle(s, r, b, setting):
     """Go on with other equations: nothing that was learnt from the old ones counts any more."""
     evaluate_all(s, r, setting, r.t)
     r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
-    r.stiff, r.not_stiff = 0, 0
+    r.stiff, r.not_stiff, r.fading = 0, 0, 0
     r.past_error, r.factored_h = 0.0, 0.0
     behind(s, r, b, r.t)

@@ -226,6 +226,7 @@ class Record(Packed):
     method_switches: I8  # changes of method
     stiff: I8  # steps in a row that looked stiff to an explicit method, or not to an implicit one
     not_stiff: I8  # steps in a row that speak against it
+    fading: I8  # explicit steps in a row that a decay alone may hold
     history: I8  # what `past` holds: NO_HISTORY, a step BEHIND the state, a trial AHEAD of it
     jacobian: I8  # state of `by_place` and `by_rate`: NO_JACOBIAN, NO_RATES, OLD, FRESH
     next_jacobian: I8  # its state once the last trial is accepted: OLD, or NO_JACOBIAN

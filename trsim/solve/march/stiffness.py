@@ -97,10 +97,15 @@ def longest_calm(r):
 
 
 @internal
+def decays(r):
+    """Whether that is set by a decay, not by a vibration."""
+    return SWINGING * r.decay >= DYING * sqrt(r.vibration)
+
+
+@internal
 def stiffest(r):
     """The rate of what sets that, 1/s: of a vibration or of a decay."""
-    w = sqrt(r.vibration)
-    return w if SWINGING * r.decay < DYING * w else r.decay
+    return r.decay if decays(r) else sqrt(r.vibration)
 
 
 @internal

@@ -9,6 +9,11 @@ way to the implicit one: near a singular position some steps look stiff and are 
 of large models are dear.  The implicit one gives back after an event, or when its own steps, with
 the largest eigenvalue of its matrices by a few vector iterations, would be stable for the explicit
 one as well.
+
+A decay c that nothing is seen of holds steps below that limit too: the error estimate sees what is
+left of it, the more the tighter the tolerance.  Whether it is that or the motion no estimate tells,
+so the implicit method is tried after PATIENCE steps with h c > 1, and keeps on if its steps are
+longer than EASY / c; after each change back with more patience.
 """
 
 from math import sqrt
@@ -23,7 +28,7 @@ from trsim.solve.march.record import (
     TO_IMPLICIT,
     note_event,
 )
-from trsim.solve.march.stiffness import stiff_load, stiffest, still
+from trsim.solve.march.stiffness import decays, smooth, stiff_load, stiffest, still
 from trsim.solve.methods.displacements import active
 from trsim.solve.methods.dop853 import FROM_LAST_STAGE, combined
 
@@ -34,6 +39,7 @@ STIFF_STEPS, RELIEF, CHEAP_STEPS = 15, 6, 20
 DEAR = 4  # a Jacobian and its dense factors cost about as much as n_v / 4 explicit steps
 NEAR, CALM = 3.0, 3.5  # h rho: where steps of DOP853 on contacts are watched, what they are held to
 EASY = 3.0  # h rho at which the explicit method takes steps of the same length
+PATIENCE = 60  # times the square of the changes so far, counted in pairs
 SEEN = 1e-4  # of the error allowed: steps at the limit of stability change by about all of it
 ITERATIONS = 12  # of the vector iteration
 
@@ -44,6 +50,7 @@ def choose(s, r, b, h, event):
     if r.method == EXPLICIT:
         if event:  # behind it the derivative changes by other rates
             r.explicit_rate = 0.0
+            r.fading = 0
             return
         rate = explicit_rate(s, r, b, h)
         load, light = h * max(rate, STABLE / HELD * stiff_load(r, 1.0)), calmed(s, r, h, rate)
@@ -56,6 +63,8 @@ def choose(s, r, b, h, event):
             r.not_stiff += 1
             if r.not_stiff >= RELIEF:
                 r.stiff = 0
+            if impatient(s, r, h):
+                change(s, r, b, IMPLICIT, h * r.decay, r.decay)
         return
     if event:
         change(s, r, b, EXPLICIT, 0.0, 0.0)
@@ -66,6 +75,16 @@ def choose(s, r, b, h, event):
     r.stiff = r.stiff + 1 if load < EASY else 0
     if r.stiff >= CHEAP_STEPS:
         change(s, r, b, EXPLICIT, load, r.jacobian_rate)
+
+
+@internal
+def impatient(s, r, h):
+    """Whether a decay may have held the explicit steps for so long that the implicit method is
+    tried."""
+    held = r.vibration > 0.0 and decays(r) and h * r.decay > 1.0 and smooth(s, r)
+    r.fading = r.fading + 1 if held else 0
+    tried = 1 + r.method_switches // 2
+    return r.fading >= max(PATIENCE, s.n_v) * tried * tried
 
 
 @internal
@@ -100,7 +119,7 @@ def change(s, r, b, method, load, rate):
     """Go on with the other method; the line says how stiff the last step was, and the rate, 1/s, of
     what is stiffest."""
     r.method = method
-    r.stiff, r.not_stiff = 0, 0
+    r.stiff, r.not_stiff, r.fading = 0, 0, 0
     r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
     r.past_error, r.factored_h, r.next_look = 0.0, 0.0, r.steps
     r.explicit_rate = 0.0
