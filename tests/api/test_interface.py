@@ -145,6 +145,15 @@ def test_a_file_is_there_as_long_as_its_result():
     assert not file.exists()
 
 
+def test_a_run_that_is_refused_leaves_no_folder(tmp_path, monkeypatch):
+    """It was removed once Python came upon it, with a ResourceWarning anywhere."""
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    for given in ({**DROP, "solver": {}}, {**DROP, "gravity": "down"}):
+        with pytest.raises(trsim.ScenarioError) as refused:
+            trsim.run(given)
+        assert refused.value and not [*tmp_path.iterdir()]
+
+
 # --- what is refused -------------------------------------------------------------------------
 
 

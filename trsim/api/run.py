@@ -1,9 +1,10 @@
 """`run`: one scenario simulated into a result file."""
 
 import os
-import tempfile
 import weakref
+from contextlib import ExitStack
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple, TypedDict, Unpack
 
 from trsim.api.hearing import Listener
@@ -52,21 +53,19 @@ def run(
 
     Raises ScenarioError, ModelError, SolverError, FileError, UsageError.
     """
-    folder = None
-    if output is None and not isinstance(scenario, str | os.PathLike):
-        folder = tempfile.TemporaryDirectory(prefix="trsim-")
-        output = Path(folder.name) / "run.h5"
-    target = Path(output) if output else Path("runs") / f"{stem(called(scenario))}.h5"
-    hears = Listener()
-    hears.command = told(scenario, output, set, options)
-    hears.again = told(scenario, output, set, {**options, "resume": True})
-    with listening(), one_thread():
-        summary = made(hears, Work(scenario, target, wanted(settings(set), **options)))
+    with ExitStack() as own:  # of a folder that is there as long as the result is
+        if output is None and not isinstance(scenario, str | os.PathLike):
+            output = Path(own.enter_context(TemporaryDirectory(prefix="trsim-"))) / "run.h5"
+        target = Path(output) if output else Path("runs") / f"{stem(called(scenario))}.h5"
+        hears = Listener()
+        hears.command = told(scenario, output, set, options)
+        hears.again = told(scenario, output, set, {**options, "resume": True})
+        with listening(), one_thread():
+            summary = made(hears, Work(scenario, target, wanted(settings(set), **options)))
+        found = Result(summary["file"], summary)
+        weakref.finalize(found, own.pop_all().close)
     for text in summary["warnings"]:
         hears.warn(called(scenario), text)
-    found = Result(summary["file"], summary)
-    if folder is not None:
-        weakref.finalize(found, folder.cleanup)
     if raises and summary["status"] in ILL:
         raise failed(called(scenario), summary, found)
     return found
