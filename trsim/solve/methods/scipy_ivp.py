@@ -57,6 +57,8 @@ from trsim.solve.march.record import (
     fresh_buffers,
 )
 from trsim.solve.march.rounding import EPS, MARGIN
+from trsim.solve.march.stiffness import size_of as size_of_swing
+from trsim.solve.march.stiffness import turned
 from trsim.solve.march.works import ROUNDING
 from trsim.solve.methods.jacobian import PART
 from trsim.solve.outcome import (
@@ -94,6 +96,8 @@ BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
 SHOWN = 0.5  # of the error allowed: what Newton's method leaves of it in third derivatives
 NOISE = 25.0  # of rates, in third derivatives: as what Newton's method leaves, a fiftieth of that
 TOO_LONG = 0.03  # of how fine steps were: one that asks for less is made again
+SEEING = 3  # degree of a polynomial that has a third derivative
+FIRST = 1.0  # rad: what a first step may hold of a vibration that counts
 OWN = 4.0  # over h: what is slow beside it, and stiff
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
 
@@ -156,8 +160,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     reason = ""
     limited = any(instance.row.limits for instance in mechanism.instances)
     limit, crawled = scenario.solver.max_steps or 2**62, 0
-    finer = 1.0
-    solver = restarted(run, finer)
+    solver, finer = restarted(run, 1.0)
     while r.t < setting.t_end:
         reason = stopped(solver)
         if reason:
@@ -166,10 +169,12 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         h = solver.t - solver.t_old
         hand_over(solver, b)
         before = finer
-        finer = min(of_accelerations(run, h, before), EASED * before)
+        seen = getattr(solver, "order", SEEING) >= SEEING
+        finer = of_accelerations(run, h, before) if seen else at_first(run, h)
+        finer = min(finer, EASED * before)
         if finer < TOO_LONG * before:
             r.h = 0.3 * h
-            solver = restarted(run, finer)
+            solver, finer = restarted(run, finer)
             continue
         b.h, b.built, b.halved = h, 1, 0
         outcome = complete(s, r, b, setting, method)
@@ -178,7 +183,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             break
         if outcome in (STRAYED, WOUND):
             r.h = 0.3 * h
-            solver = restarted(run, finer, float(r.h))
+            solver, finer = restarted(run, finer, float(r.h))
             continue
         if outcome == AT_POLE or untrue(scenario, mechanism, r):
             status = "failed"
@@ -202,7 +207,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
                 solver.atol = allowed(run, finer)
             solver.atol[books(s)] = unit_of_works(r, setting)
         elif r.t < setting.t_end:
-            solver = restarted(run, finer)
+            solver, finer = restarted(run, finer)
         if r.steps >= limit and r.t < setting.t_end:
             status, reason = "failed", f"more than {limit} steps"
             break
@@ -249,8 +254,9 @@ def longest(setting: Settings, b: Buffers) -> float:
     return float(min(setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every))
 
 
-def restarted(run: Run, finer: float, most: float = np.inf) -> Any:
-    """A scipy solver at the state of the record, with the error units in force there."""
+def restarted(run: Run, finer: float, most: float = np.inf) -> tuple[Any, float]:
+    """A scipy solver at the state of the record, with the error units in force there, and the part
+    of these that they are: its first steps see little of what vibrates."""
     import scipy.integrate
 
     method, s, r, b, setting = run
@@ -260,6 +266,7 @@ def restarted(run: Run, finer: float, most: float = np.inf) -> Any:
         derivative(s, t, y if y.flags.c_contiguous else y.copy(), yd)
         return yd
 
+    finer = min(finer, at_first(run, float(r.h)))
     atol = allowed(run, finer)
     # scipy's own differences begin at 1e-8 of an entry or of its error: far below rounding where
     # a body is 50 m from the origin and entries of its quaternion are zero
@@ -278,9 +285,12 @@ def restarted(run: Run, finer: float, most: float = np.inf) -> Any:
     t = float(r.t)
     until = next_time(s, t, setting.t_end)
     first = min(float(r.h), until - t)
+    if finer < 1.0:
+        first = min(first, FIRST / float(swings(s, r, b)))
     most = min(most, longest(setting, b))
-    return make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
+    made = make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
                 max_step=most, rtol=RELATIVE, atol=atol, **more)  # fmt: skip
+    return made, finer
 
 
 def allowed(run: Run, finer: float) -> Array:
@@ -331,6 +341,37 @@ def of_accelerations(run: Run, h: float, finer: float) -> float:
     mine = max(mine, max(turns, 1.0) * rounding)
     finest = RELATIVE / setting.step_error  # below it only rounding is left
     return min(1.0, max(finest, mine / off)) if off > 0.0 else 1.0
+
+
+def at_first(run: Run, h: float) -> float:
+    """The same before a step, or behind one whose polynomial has no third derivative, by what
+    vibrates in the motion."""
+    s, r, setting = run.s, run.r, run.setting
+    if s.contact.size > 0 or not settles.python(s):
+        return 1.0
+    w = min(float(swings(s, r, run.b)), WIDEST / h)
+    r.top_acceleration = most = float(largest.python(s, r.yd, r.top_acceleration))
+    off = w * hypot(w * float(r.length), float(r.speed)) * sqrt(s.n_r - 1)
+    off *= most / max(most, w * float(r.speed) / FURTHEST)
+    mine = float(share.python(s, setting, h, ONE)) * most
+    finest = RELATIVE / setting.step_error
+    return min(1.0, max(finest, mine / off)) if off > 0.0 else 1.0
+
+
+@compiled(float64(SCENE, RECORD, BUFFERS))
+def swings(s, r, b):
+    """w, rad/s, of what vibrates fastest of the motion: w^2 = |K K d| / |K d|, K d the change of
+    accelerations with a displacement d along velocities and accelerations."""
+    swing, speed = r.swing[0], max(r.speed, r.speed_cap)
+    v, a = r.y[s.n_q : s.n_q + s.n_v], r.yd[s.n_q : s.n_q + s.n_v]
+    sizes = size_of_swing(s, v, speed, s.n_v), size_of_swing(s, a, speed, s.n_v)
+    for k in range(s.n_v):
+        swing[k] = a[k] + (v[k] * sizes[1] / sizes[0] if sizes[0] > 0.0 else 0.0)
+    if not size_of_swing(s, swing, speed, s.n_v) > 0.0 or turned(s, r, b, 0) == 0.0:
+        return 0.0
+    ww = turned(s, r, b, 0)
+    evaluate(s, r.t, r.y, b.rough[1])
+    return sqrt(ww)
 
 
 def of_rounding(run: Run) -> float:
