@@ -1,6 +1,7 @@
 """Without what only some systems have, everything but locks and limits of memory works."""
 
 import os
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -85,3 +86,28 @@ def test_names_of_the_system_stand_in_one_file():
     for path in Path(system.__file__).parent.rglob("*.py"):
         text = path.read_text()
         assert path == Path(system.__file__) or not [name for name in only if name in text], path
+
+
+KEEPS = """
+import resource, sys
+import numpy as np
+from trsim import system
+if len(sys.argv) > 1:
+    system.keep_memory()
+for again in range(3):
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    arrays = [np.ones(1 << 18) for _ in range(10)]
+    del arrays
+print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+"""
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="of glibc alone")
+def test_memory_is_kept():
+    """What is freed serves the next arrays: no page of them is asked of the system again."""
+    given = {"env": {**os.environ, "PYTHONPATH": str(ROOT)}, "capture_output": True, "text": True}
+    pages = [
+        int(subprocess.run([sys.executable, "-c", KEEPS, *more], check=True, **given).stdout)  # noqa: S603
+        for more in ([], ["keep"])
+    ]
+    assert pages[0] > 1000 > 100 > pages[1]

@@ -54,6 +54,51 @@ def test_it_is_given_back_at_an_event(at):
     assert np.all(r["block.velocity"][-1, :1] > 0.0)
 
 
+# two masses slide along a hub that turns, on springs and dampers: what is seen of these is nothing
+GOVERNOR = """
+bodies:
+  hub: {{mass: 1, inertia: 0.1}}
+  left: {{mass: 1, inertia: 0.01, at: [0.1, 0]}}
+  right: {{mass: 1, inertia: 0.01, at: [-0.1, 0]}}
+joints:
+  pin: {{type: revolute, bodies: [ground, hub], at: [0, 0]}}
+  out: {{type: prismatic, bodies: [hub, left], axis: [1, 0, 0], at: [0.1, 0]}}
+  back: {{type: prismatic, bodies: [hub, right], axis: [-1, 0, 0], at: [-0.1, 0]}}
+drives: {{motor: {{joint: pin, velocity: "10 + 5*sin({turn}*t)"}}}}
+forces:
+  s1: {{type: joint_spring, joint: out, elastic: "2000*stretch", damper: "{damping}*rate"}}
+  s2: {{type: joint_spring, joint: back, elastic: "2000*stretch", damper: "{damping}*rate"}}
+solver: {{end: {end}, tolerance: {tolerance}, method: {method}}}
+output: {{every: {end}}}
+"""
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+def test_a_decay_that_nothing_is_seen_of(tolerance):
+    """It dies out in 0.1 ms; steps were held by it for seconds, the more the tighter."""
+    of = {
+        method: run(GOVERNOR.format(turn=2, damping=1e4, end=2, tolerance=tolerance, method=method))
+        for method in ("auto", "radau")
+    }
+    taken, given_back = changes(of["auto"])
+    assert len(taken) == 1 and len(given_back) == 0
+    steps, needed = (of[method].outcome.statistics["evaluations"] for method in ("auto", "radau"))
+    assert steps < 1.5 * needed
+    a, b = (of[method]["left.position"][-1] for method in ("auto", "radau"))
+    assert np.abs(a - b).max() < 20 * tolerance * 0.1
+
+
+def test_patience_grows_where_the_implicit_method_is_no_better():
+    """The motion asks for steps that are as short as the decay: it is tried ever more rarely."""
+    text = GOVERNOR.format(turn=200, damping=3000, end=3, tolerance=1e-7, method="auto")
+    r = run(text)
+    taken, given_back = changes(r)
+    assert 2 <= len(taken) <= 8 and len(given_back) >= len(taken) - 1
+    alone = run(text.replace("method: auto", "method: dop853"))
+    both = [x.outcome.statistics["evaluations"] for x in (r, alone)]
+    assert both[0] < 1.3 * both[1]
+
+
 LOCKED = """
 gravity: [0, -9.81]
 bodies:

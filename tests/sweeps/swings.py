@@ -1,6 +1,5 @@
 """A pendulum let go at rest, as a worker's job without a solver: it does not swing any higher."""
 
-
 from trsim.sweeps.summary import sent
 
 

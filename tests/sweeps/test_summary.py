@@ -4,6 +4,7 @@ import math
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests import small
@@ -18,7 +19,7 @@ from trsim.assemble.assemble import assemble
 from trsim.errors import FileError, ScenarioError, UsageError
 from trsim.scenario.load import loads
 from trsim.solve.simulate import simulate
-from trsim.store.live import Taking
+from trsim.store.live import Gathered, Taking
 from trsim.store.read import read
 from trsim.sweeps.go import engine, go
 from trsim.sweeps.plan import plan
@@ -63,6 +64,19 @@ def test_a_run_in_memory_gives_what_its_file_gives(name, tmp_path):
     assert packed(one)[1] == packed(two)[1]
     assert told["status"] == "done" and told["rows"] == filed.rows
     assert one["channels"] and all(len(row) == len(OF_CHANNELS) for row in one["channels"].values())
+
+
+def test_lines_of_blocks_as_they_come():
+    """More than there is room for, in blocks whose memory is the solver's again."""
+    rng = np.random.default_rng(3)
+    for expected in (0, 7, 500):
+        gathered, told, block = Gathered(4, expected), [], np.empty((90, 4))
+        for n in (0, 1, 5, 90, 3, 77, 90, 0, 64):
+            block[:n] = rng.random((n, 4))
+            told.append(block[:n].copy())
+            gathered.append(block[:n])
+        assert np.array_equal(gathered.whole(), np.vstack(told)) and gathered.n == 330
+        assert all(column.flags.c_contiguous for column in gathered.whole().T)
 
 
 @pytest.fixture(scope="module")

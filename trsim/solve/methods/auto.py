@@ -13,7 +13,7 @@ one as well.
 A decay c that nothing is seen of holds steps below that limit too: the error estimate sees what is
 left of it, the more the tighter the tolerance.  Whether it is that or the motion no estimate tells,
 so the implicit method is tried after PATIENCE steps with h c > 1, and keeps on if its steps are
-longer than EASY / c; after each change back with more patience.
+longer than FADED / c; after each change back with more patience.
 """
 
 from math import sqrt
@@ -39,6 +39,7 @@ STIFF_STEPS, RELIEF, CHEAP_STEPS = 15, 6, 20
 DEAR = 4  # a Jacobian and its dense factors cost about as much as n_v / 4 explicit steps
 NEAR, CALM = 3.0, 3.5  # h rho: where steps of DOP853 on contacts are watched, what they are held to
 EASY = 3.0  # h rho at which the explicit method takes steps of the same length
+FADED = 2.0  # the same where it is a decay: DOP853 takes 1.8 at 1e-6, and steps cost more
 PATIENCE = 60  # times the square of the changes so far, counted in pairs
 SEEN = 1e-4  # of the error allowed: steps at the limit of stability change by about all of it
 ITERATIONS = 12  # of the vector iteration
@@ -72,7 +73,7 @@ def choose(s, r, b, h, event):
     if r.jacobian_rate < 0.0:
         r.jacobian_rate = implicit_rate(s, r, b)
     load = h * r.jacobian_rate
-    r.stiff = r.stiff + 1 if load < EASY else 0
+    r.stiff = r.stiff + 1 if load < (FADED if fades(r) else EASY) else 0
     if r.stiff >= CHEAP_STEPS:
         change(s, r, b, EXPLICIT, load, r.jacobian_rate)
 
@@ -81,10 +82,16 @@ def choose(s, r, b, h, event):
 def impatient(s, r, h):
     """Whether a decay may have held the explicit steps for so long that the implicit method is
     tried."""
-    held = r.vibration > 0.0 and decays(r) and h * r.decay > 1.0 and smooth(s, r)
+    held = fades(r) and h * r.decay > 1.0 and smooth(s, r)
     r.fading = r.fading + 1 if held else 0
     tried = 1 + r.method_switches // 2
     return r.fading >= max(PATIENCE, s.n_v) * tried * tried
+
+
+@internal
+def fades(r):
+    """Whether the stiffest that is known is a decay."""
+    return r.vibration > 0.0 and decays(r)
 
 
 @internal
