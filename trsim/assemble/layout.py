@@ -69,7 +69,7 @@ def layout(
 
     def add(name: str, channel: Channel, wanted: bool, extra: bool = False) -> None:
         nonlocal width
-        _, unit, meaning, size, least, turn = channel
+        _, unit, meaning, size, least, turn, _ = channel
         columns.append(Column(name, unit, meaning, width, size, wanted, extra, least, turn))
         width += size
 

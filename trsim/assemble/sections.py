@@ -14,8 +14,9 @@ from trsim.scenario.event import DIRECTIONS
 
 # kinds of surface, and columns of model.section and of model.section_at
 CROSSING, STROBE, TOUCH = 0, 1, 2
-# WHEN: an output column, or the row of a contact; WAVES: 1 where loads and drives make it swing
-KIND, WHEN, DIRECTION, X, Y, WAVES, N_SECTION = range(7)
+# WHEN: an output column, or the row of a contact; WAVES: 1 where loads and drives make it swing;
+# ALONE: the row of the element that tells WHEN by places and rates alone, or -1
+KIND, WHEN, DIRECTION, X, Y, WAVES, ALONE, N_SECTION = range(8)
 AFTER, EVERY = range(2)
 SECTION = "poincare"  # of a scenario
 SMOOTH = ("m", "m/s", "rad", "rad/s", "-")  # units of what loads move by its accelerations only
@@ -41,7 +42,8 @@ def sections(
         x, y = (column_of(c, there, (SECTION, name, "plot", k)) for k, c in enumerate(spec.plot))
         kind, when = surface(scenario, name, spec, instances, there)
         waving = kind == CROSSING and not smooth(there[stored(spec.when, there)[0]], functions)
-        rows.append((kind, when, DIRECTIONS[spec.crosses], x, y, int(waving)))
+        alone = moving(stored(spec.when, there)[0], instances) if kind == CROSSING else -1
+        rows.append((kind, when, DIRECTIONS[spec.crosses], x, y, int(waving), alone))
         at.append((spec.after, spec.every or 0.0))
         units = [there[stored(c, there)[0]].unit for c in spec.plot]
         crosses = spec.crosses if spec.when else ""
@@ -55,6 +57,15 @@ def sections(
         **followed(waves if swinging or any(row[WAVES] for row in rows) else []),
     }
     return fields, tuple(found)
+
+
+def moving(name: str, instances: list[Instance]) -> int:
+    """The row of the element whose channel this is, if it is of places and rates alone; else -1."""
+    for e, instance in enumerate(instances):
+        for channel in instance.channels:
+            if channel.moves and name == f"{instance.name}.{channel.name}".rstrip("."):
+                return e
+    return -1
 
 
 def smooth(column: Column, functions: set[str]) -> bool:

@@ -148,6 +148,7 @@ class Channel(NamedTuple):
     size: int = 1
     least: float = -inf  # a lower bound by its definition alone
     turn: bool = False  # one about any axis, whose largest angle every run is judged by
+    moves: bool = False  # of places and rates alone: no force has to be known for it
 
     def unit_on(self, own: str) -> str:
         """The unit where it depends on what it acts along, a coordinate in `own`: rad or m."""
@@ -159,6 +160,11 @@ class Channel(NamedTuple):
         if "coordinate" not in self.unit and self.unit != "drive":
             return self
         return self._replace(unit=self.unit_on(own))
+
+
+def moving(name: str, unit: str, meaning: str, size: int = 1) -> Channel:
+    """A channel of places and rates alone."""
+    return Channel(name, unit, meaning, size, moves=True)
 
 
 # what every joint with constraint rows records

@@ -15,7 +15,7 @@ from pydantic import BeforeValidator, ConfigDict, model_validator
 
 from trsim import elements
 from trsim.elements.cable import Cable
-from trsim.elements.contract import Channel, Element, Memory, Row, measured
+from trsim.elements.contract import Channel, Element, Memory, Row, measured, moving
 from trsim.elements.inertia import Inertia, tensor_of, written
 from trsim.elements.solid import Solid
 from trsim.errors import ScenarioError
@@ -178,12 +178,12 @@ ELEMENT = Element(
     spec=RigidBody,
     pack=pack,
     channels=(
-        Channel("position", "m", "centre of mass, world axes", 3),
-        Channel("velocity", "m/s", "of the centre of mass, world axes", 3),
+        moving("position", "m", "centre of mass, world axes", 3),
+        moving("velocity", "m/s", "of the centre of mass, world axes", 3),
         Channel("acceleration", "m/s^2", "of the centre of mass, world axes", 3),
-        Channel("angular_velocity", "rad/s", "world axes", 3),
+        moving("angular_velocity", "rad/s", "world axes", 3),
         Channel("angular_acceleration", "rad/s^2", "world axes", 3),
-        Channel("rotation", "-", "rotation matrix, row by row", 9),
+        moving("rotation", "-", "rotation matrix, row by row", 9),
     ),
     kernels={"measure": measure},
     example="""

@@ -10,7 +10,16 @@ from typing import Annotated, ClassVar, Literal
 
 from trsim.elements.bend import Bent, bend, bend_acceleration
 from trsim.elements.bend import turning as turning_bend
-from trsim.elements.contract import Channel, Element, Row, Turning, ends, kernel, measured
+from trsim.elements.contract import (
+    Channel,
+    Element,
+    Row,
+    Turning,
+    ends,
+    kernel,
+    measured,
+    moving,
+)
 from trsim.elements.coordinates import ANY
 from trsim.elements.frames import (
     arm,
@@ -81,8 +90,8 @@ def of_bend(bent, name, spec, at):
 
 
 CHANNELS = (
-    Channel("", "coordinate", "coordinate of the joint"),
-    Channel("rate", "coordinate/s", "its rate"),
+    moving("", "coordinate", "coordinate of the joint"),
+    moving("rate", "coordinate/s", "its rate"),
     Channel("acceleration", "coordinate/s^2", "its acceleration; not for a cam"),
 )
 

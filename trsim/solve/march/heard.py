@@ -70,8 +70,8 @@ def sound(s, r, b, method, k, end):
 
 @internal
 def what_of(s, k):
-    """What event k looks at: the column, and the value taken off it."""
-    return s.heard[k], s.watch_at[k, VALUE]
+    """What event k looks at: the column, the value taken off it, and -1: see sampled.py."""
+    return s.heard[k], s.watch_at[k, VALUE], -1
 
 
 @internal

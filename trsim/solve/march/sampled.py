@@ -3,10 +3,18 @@
 The step is looked at in PARTS, and as many again for every TURN that the fastest body turns by, or
 every WAVE of the fastest sine in a function (turns.py) where the channel may swing with it: a
 force, an acceleration, what a drive prescribes.  What is looked at is `what`: a column of the
-output rows, and the value taken off it.
+output rows, the value taken off it, and the row of the element that tells it by places and rates
+alone, or -1.  Of such a column no forces are evaluated where places are taken as interpolated.
 """
 
+from math import sqrt
+
+from trsim.assemble.equations import call_one, set_poses
+from trsim.assemble.linear import smallest_pivot
+from trsim.assemble.projection import DOUBTFUL
+from trsim.elements.scene import NONE
 from trsim.kernels.lazy import internal
+from trsim.solve.march.calls import call_interpolate
 from trsim.solve.march.dense_output import measure_inside
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.turns import fastest, waves_in
@@ -24,16 +32,46 @@ SHORT = 64.0  # resolutions of the time: inside so short a step there is roundin
 @internal
 def value(s, r, b, what, theta):
     """What is looked at, inside the step."""
-    column, at = what
-    measure_inside(s, r, b, b.t + theta * b.h, theta)
+    column, at, alone = what
+    if alone >= 0 and b.alone > 0:
+        call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
+        look_alone(s, b.t + theta * b.h, b.y2, alone)
+    else:
+        measure_inside(s, r, b, b.t + theta * b.h, theta)
     return s.out[column] - at
+
+
+@internal
+def as_interpolated(s, r, b, turn):
+    """Whether states inside the step are taken as interpolated, see measure_at and evaluate_inside.
+
+    Its end was evaluated last; the least pivot there is the square of a sine that changes by no
+    more than the bodies of both its rows turn, `turn` rad in the step at most.
+    """
+    if r.driven > 0 or b.rate > 0 or s.redundant.shape[0] > 0:
+        return False
+    if s.m == 0 or s.stabilisation == NONE:
+        return True
+    return sqrt(max(smallest_pivot(s), 0.0)) - 2.0 * turn > sqrt(DOUBTFUL)
+
+
+@internal
+def look_alone(s, t, y, e):
+    """The channels of one element that are of places and rates alone, at a state."""
+    set_poses(s, y)
+    call_one(s, s.measure, t, e)
+
+
+@internal
+def turned(s, r, b, last):
+    """By how much the fastest body turns in the step, rad."""
+    return max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last])) * (b.t1 - b.t)
 
 
 @internal
 def parts_of(s, r, b, last):
     """In how many parts a step is looked at."""
-    fast = max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last]))
-    return parts_for(r, fast * (b.t1 - b.t) / TURN)
+    return parts_for(r, turned(s, r, b, last) / TURN)
 
 
 @internal

@@ -28,6 +28,7 @@ from math import isfinite, log10
 from trsim.assemble.outputs import measure
 from trsim.assemble.sections import (
     AFTER,
+    ALONE,
     CROSSING,
     DIRECTION,
     EVERY,
@@ -65,10 +66,14 @@ from trsim.solve.march.sampled import (
     NEAR,
     PARTS,
     SHORT,
+    TURN,
+    as_interpolated,
     dip,
-    parts_of,
+    look_alone,
+    parts_for,
     resolution,
     root,
+    turned,
     value,
     waves_of,
 )
@@ -87,8 +92,10 @@ def sections(s, r, b, method, event):
     """
     last, built, t1 = method[LAST_AT], b.built, b.t1
     counted = (s.status[0], s.status[1], s.status[2], s.status[3])
+    turn = turned(s, r, b, last)
+    b.alone = int(as_interpolated(s, r, b, turn))
     ends_known(s, r, b, last, event)
-    still = parts_of(s, r, b, last)
+    still = parts_for(r, turn / TURN)
     swinging = waves_of(s, r, b)
     for k in range(s.section.shape[0]):
         kind = s.section[k, KIND]
@@ -202,12 +209,31 @@ def ends_known(s, r, b, last, event):
         ahead = AHEAD * (t1 - t)
         for c in range(b.y2.size):
             b.y2[c] = b.y1[c] + ahead * b.K[last, c]
-        evaluate_to_measure(s, t1 + ahead, b.y2, scratch)
-        measure(s, t1 + ahead, b.y2, done, energy_0)
+        if not all_alone(s, t1 + ahead, b.y2):
+            evaluate_to_measure(s, t1 + ahead, b.y2, scratch)
+            measure(s, t1 + ahead, b.y2, done, energy_0)
         for k in range(s.section.shape[0]):
             if s.section[k, KIND] == CROSSING:
                 o = s.section[k, WHEN]
                 r.section[k, END_RATE] = (s.out[o] - b.out[o]) / ahead
+
+
+@internal
+def all_alone(s, t, y):
+    """Look at all `when` of crossings at a state, where places and rates tell them alone."""
+    for k in range(s.section.shape[0]):
+        if s.section[k, KIND] == CROSSING and s.section[k, ALONE] < 0:
+            return False
+    for k in range(s.section.shape[0]):
+        if s.section[k, KIND] == CROSSING:
+            look_alone(s, t, y, s.section[k, ALONE])
+    return True
+
+
+@internal
+def what_of(s, k):
+    """What section k looks at, see sampled.py."""
+    return s.section[k, WHEN], 0.0, s.section[k, ALONE]
 
 
 @internal
@@ -250,7 +276,7 @@ def may_cross(s, r, b, k, event, parts):
 @internal
 def crossings(s, r, b, k, parts):
     """The points of all crossings in the step.  Places inside it are pairs: theta, value."""
-    what, reach = (s.section[k, WHEN], 0.0), (b.t1 - b.t) / b.h
+    what, reach = what_of(s, k), (b.t1 - b.t) / b.h
     before = (-1.0, 0.0)  # the neighbour before the last, where both are on one side
     low, side = (0.0, r.section[k, LAST]), r.section[k, ON]
     if reach <= SHORT * resolution(b):
@@ -301,7 +327,7 @@ def crossed(s, r, b, k, places, to):
     if want != 0 and want != to:
         return
     low, high = places
-    theta, jump = root(s, r, b, (s.section[k, WHEN], 0.0), low, high)
+    theta, jump = root(s, r, b, what_of(s, k), low, high)
     if jump <= JUMP * max(r.section[k, FAR], abs(high[1] - low[1])):
         measure_inside(s, r, b, b.t + theta * b.h, theta)
         point(s, r, b, k, min(b.t + theta * b.h, b.t1), s.out)
