@@ -36,6 +36,7 @@ ACT = 9  # a user event happened: the caller does what it says
 JOLTS_KEPT = 8
 PASSES_KEPT, MEETINGS_KEPT = 32, 8
 PARTS = 8  # in which the top of a polynomial is looked for
+LOOKS = 8  # parts of a step in which channels of any kind are looked at, at least  sampled.py
 CHANGES_KEPT = 6  # of states tried, that are learned from                          settle.py
 FOUND = 200  # places between two samples where extremes are looked for
 
@@ -304,6 +305,8 @@ class Buffers(Packed):
     unmoved: A2 = of(3, "n_y")  # its end and y' there before that, and scratch
     square: A2 = of(0, 0)  # J, and rows swapped in it, where it is square  kinematic.py
     swaps: I1 = of(0)
+    looks: A2 = of(LOOKS, "section")  # `when` of all sections at places inside the step
+    looked: I1 = of(LOOKS)  # which of these places were looked at                     sections.py
     root: A1 = of("gaps")  # where in the step its phase changes, 2 for nowhere
     corner_root: A1 = of("contact")  # and where it meets a corner
     branch1: A1 = of("angles")

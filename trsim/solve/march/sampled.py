@@ -17,9 +17,10 @@ from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import call_interpolate
 from trsim.solve.march.dense_output import measure_inside
 from trsim.solve.march.illinois import between, narrowed
+from trsim.solve.march.record import LOOKS
 from trsim.solve.march.turns import fastest, waves_in
 
-PARTS = 8  # of a step that is looked at, for each TURN
+PARTS = LOOKS  # of a step that is looked at, for each TURN
 TURN, WAVE = 0.5, 2.0  # rad
 MOST_PARTS = 4096  # of a step; turns.py keeps steps to fewer, unless their length is fixed
 DIPS = 12  # looks at the bottom of a dip

@@ -94,6 +94,8 @@ def sections(s, r, b, method, event):
     counted = (s.status[0], s.status[1], s.status[2], s.status[3])
     turn = turned(s, r, b, last)
     b.alone = int(as_interpolated(s, r, b, turn))
+    for j in range(b.looked.size):
+        b.looked[j] = 0
     ends_known(s, r, b, last, event)
     still = parts_for(r, turn / TURN)
     swinging = waves_of(s, r, b)
@@ -283,7 +285,7 @@ def crossings(s, r, b, k, parts):
         parts = 1
     for j in range(1, parts + 1):
         theta = reach * j / parts
-        high = (theta, value(s, r, b, what, theta) if j < parts else b.out[what[0]])
+        high = (theta, inner(s, r, b, k, (j, parts, theta)) if j < parts else b.out[what[0]])
         if b.t == 0.0 and j == 1 and abs(low[1]) <= AT_START * abs(high[1]):
             side = 0.0
         new = side_of(high[1], side)
@@ -305,6 +307,22 @@ def crossings(s, r, b, k, parts):
             before = low
         low, side = high, new
     r.section[k, ON] = side  # the one it is on at an end that is zero
+
+
+@internal
+def inner(s, r, b, k, place):
+    """`when` of section k at the j-th of so many places; where forces are evaluated for it all
+    sections look at once."""
+    j, parts, theta = place
+    if b.alone > 0 or parts != PARTS:
+        return value(s, r, b, what_of(s, k), theta)
+    if b.looked[j] == 0:
+        measure_inside(s, r, b, b.t + theta * b.h, theta)
+        for i in range(s.section.shape[0]):
+            if s.section[i, KIND] == CROSSING:
+                b.looks[j, i] = s.out[s.section[i, WHEN]]
+        b.looked[j] = 1
+    return b.looks[j, k]
 
 
 @internal
