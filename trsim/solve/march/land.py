@@ -203,8 +203,9 @@ def limits_to_measure(s, t, y, pivot, room):
 
 
 @internal
-def off_the_rows(s, r, pivot):
-    """Whether what the last state is off the rows by is felt beyond the tolerance.
+def off_the_rows(s, r, share):
+    """Whether the last state is off the rows by more than that share of the tolerance: a pivot,
+    and it is felt beyond the tolerance.
 
     Stages of a long step past a place where branches meet feel what they are off the rows by.  The
     end of the step is brought back; what is interpolated is off along the other branch, and of that
@@ -212,7 +213,7 @@ def off_the_rows(s, r, pivot):
     """
     if s.near == 0.0 or s.stabilisation == NONE:
         return False
-    allowed = s.tolerance * pivot / s.size
+    allowed = s.tolerance * share / s.size
     length, speed = allowed * r.length, allowed * r.speed
     for k in range(s.m):
         if abs(s.phi[k]) > length * s.row_unit[k]:
