@@ -5,7 +5,6 @@ from trsim.assemble.least_norm import firmness_of_all
 from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.outputs import measure
 from trsim.elements.contract import SCENE, compiled
-from trsim.elements.scene import PROJECTION
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
@@ -14,7 +13,7 @@ from trsim.kernels.vectors import clear_table, copy_to
 from trsim.solve.march.accelerations import RUN, untouched
 from trsim.solve.march.calls import DENSE_AT, LAST_AT, call_dense, call_interpolate
 from trsim.solve.march.earlier import either_step
-from trsim.solve.march.land import INTERPOLATED, evaluate_inside, off_the_rows
+from trsim.solve.march.land import TORN, evaluate_inside, is_torn
 from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.march.samples import firmness_of_extremes
 from trsim.solve.march.settle import answered, at_rest
@@ -87,9 +86,7 @@ def torn_from_rows(s, r, b, method):
     estimate of its error knows of them, and the dense output is a polynomial through both.  It is
     off the rows by more than interpolation is.
     """
-    if s.near_rows == 0.0 or s.stabilisation != PROJECTION or r.driven > 0:
-        return False
-    if smallest_pivot(s) > SHARP:
+    if s.near_rows == 0.0 or r.driven > 0 or smallest_pivot(s) > SHARP:
         return False
     if b.built == 0:
         build(s, r, b, method)
@@ -98,7 +95,7 @@ def torn_from_rows(s, r, b, method):
         call_interpolate(b.interpolate, b.P, r.y, k / PARTS, b.y2)
         set_poses(s, b.y2)
         constraints(s, b.t + k / PARTS * b.h)
-        torn = torn or off_the_rows(s, r, INTERPOLATED)
+        torn = torn or is_torn(s, r)
     evaluate(s, b.t1, b.y1, b.rough[0])
     return torn
 
@@ -178,7 +175,8 @@ def measure_at(s, r, b, step, at, theta):
     y, P, start, work, projected = step
     call_interpolate(b.interpolate, P, y, theta, b.y2)
     moved = evaluate_inside(s, r, at, b.y2, b.rough)
-    if b.rate == 0 and moved:
+    b.torn = int(moved == TORN)
+    if b.rate == 0 and moved > 0:
         answered(s, r, b.rough[0], b.rough[2])
     if b.rate > 0 and theta > 0.0:
         place = (P, (at - start) / theta, theta)
