@@ -31,6 +31,7 @@ TOLERANCES = ("1e-2", "1e-3", "1e-4", "1e-6", "5e-7")
 SELDOM = "output: {every: 0.05}"
 # all that branches are told by: extremes of forces, which are chance here, are sought for long
 MOTION = "output.channels=['*.position', '*.angular_velocity']"
+ROUNDING = 1e-6  # 1e-12, to which rows are closed, over the least distance of branches, 1e-5
 SPACES = {"plane": ORDINARY, "tilted": TILTED}
 
 
@@ -90,10 +91,11 @@ def cross(u, v):
 def changes(r, x):
     """How often x changes its sign, what is zero to ten tolerances left out: on a branch it is some
     0.7 wide, and a row in a step past such a place is no better than its tolerance.  The last row
-    may be just behind such a place, and is the end of a step."""
+    may be just behind such a place, and is the end of a step: on the joints to rounding, whatever
+    the tolerance, so that its sign is that of its branch."""
     zero = 10.0 * r.scenario.solver.tolerance
     counted = np.abs(x) > max(0.02, zero)
-    counted[-1] = abs(x[-1]) > zero
+    counted[-1] = abs(x[-1]) > ROUNDING
     sign = np.sign(x[counted])
     return int(np.sum(sign[1:] != sign[:-1]))
 
@@ -142,6 +144,14 @@ def test_a_part_that_ends_between_the_branches_hides_no_change():
     r = run(made, *sets, *ways)
     assert of_cranks(r, np.asarray(SPACES["tilted"])) > 0
     assert told(r)
+
+
+def test_a_change_just_before_the_end_counts():
+    """Nearer to such a place, at the end, than ten tolerances."""
+    made, sets = upright(1e-7, ORDINARY)
+    ways = ("solver.method=dop853", "solver.tolerance=1e-3", "solver.end=6")
+    r = run(made, *sets, *ways, MOTION)
+    assert bool(told(r)) == (of_cranks(r, np.asarray(ORDINARY)) > 0)
 
 
 @pytest.mark.parametrize("R", SPACES.values(), ids=SPACES)

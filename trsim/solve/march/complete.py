@@ -45,7 +45,7 @@ from trsim.solve.march.calls import (
     call_sections,
     call_step,
 )
-from trsim.solve.march.dense_output import build, measure_inside, move_end
+from trsim.solve.march.dense_output import build, measure_inside, move_end, torn_from_rows
 from trsim.solve.march.earlier import keep_step
 from trsim.solve.march.events import NONE, ROUNDING, SAME
 from trsim.solve.march.features import call_meet, next_instant
@@ -98,7 +98,7 @@ def complete(s, r, b, setting, method):
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
     (values not finite; nothing was changed) or STRAYED (so long that a motion or
     a corner may be passed over, or that the step to an event is not right; the same), or LOOSE
-    (accelerations inside it are not right, or its estimate saw too little; the same) or AT_ROW (to
+    (what lies inside it is not right, or its estimate saw too little; the same) or AT_ROW (to
     end b.until after its start) or AT_POLE (a function has no value at r.pole_t, within it; the
     same).
     """
@@ -119,6 +119,8 @@ def complete(s, r, b, setting, method):
         return undone(r, worst, worst_rate, STRAYED)
     if s.status[4] > 0 and leaked(s, r, b, setting):
         return undone(r, worst, worst_rate, STRAYED)
+    if shorter_may(setting, h) and torn_from_rows(s, r, b, method):
+        return undone(r, worst, worst_rate, LOOSE)
     watching = s.section.shape[0] + s.heard.size > 0
     if watching and shorter_may(setting, h) and unseen(s, r, b, last, h):
         return undone(r, worst, worst_rate, STRAYED)

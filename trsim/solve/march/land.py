@@ -36,6 +36,7 @@ PHI_SQUARED, PHI_BELOW = 1e-6, 1e-12
 PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
 ASTRAY = 0.1  # of the fastest rate: by as much velocities of another branch are others
 INTERPOLATED = 10.0  # tolerances: what a state inside a step is off by
+TORN = 2  # what `evaluate_inside` found
 UNKNOWN = 1e-15  # of the diagonal: rounding of a pivot
 NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
 
@@ -131,28 +132,30 @@ def evaluate_inside(s, r, t, y, rough):
     Where branches meet, nearer than interpolation is off the rows by, the nearest place on them may
     be on another branch, whose velocities are others: then y stays as it is.
 
-    rough: y', room for y, and y' as it was before.  Returns whether y was brought there.
+    rough: y', room for y, and y' as it was before.  Returns whether y was brought there: TORN where
+    it was further from there than interpolation is.
     """
     yd, kept = rough[0], rough[1]
     if r.driven > 0:  # interpolation knows no better than rows
         put_on_rows(s, t, y)
         evaluate_to_measure(s, t, y, yd)
-        return False
+        return 0
     evaluate(s, t, y, yd)
     if s.m == 0 or s.stabilisation == NONE:
-        return False
+        return 0
     past = s.status[4] > 0  # a place where branches meet: the interpolation may feel it
     if s.redundant.shape[0] == 0 and not past:
         pivot = smallest_pivot(s)
         if pivot > DOUBTFUL and not off_the_rows(s, r, pivot):
-            return False
+            return 0
+    torn = is_torn(s, r)
     copy_to(kept, y)
     copy_to(rough[2], yd)
     put_on_rows(s, t, y)
     if s.near_rows > 0.0 and elsewhere(s, y, kept):
         copy_to(y, kept)
     evaluate_to_measure(s, t, y, yd)
-    return True
+    return TORN if torn else 1
 
 
 @internal
@@ -203,8 +206,9 @@ def limits_to_measure(s, t, y, pivot, room):
 
 
 @internal
-def off_the_rows(s, r, pivot):
-    """Whether what the last state is off the rows by is felt beyond the tolerance.
+def off_the_rows(s, r, share):
+    """Whether the last state is off the rows by more than that share of the tolerance: a pivot,
+    and it is felt beyond the tolerance.
 
     Stages of a long step past a place where branches meet feel what they are off the rows by.  The
     end of the step is brought back; what is interpolated is off along the other branch, and of that
@@ -212,7 +216,7 @@ def off_the_rows(s, r, pivot):
     """
     if s.near == 0.0 or s.stabilisation == NONE:
         return False
-    allowed = s.tolerance * pivot / s.size
+    allowed = s.tolerance * share / s.size
     length, speed = allowed * r.length, allowed * r.speed
     for k in range(s.m):
         if abs(s.phi[k]) > length * s.row_unit[k]:
@@ -220,6 +224,14 @@ def off_the_rows(s, r, pivot):
         if abs(velocity_residual(s, k)) > speed * s.row_unit[k]:
             return True
     return False
+
+
+@internal
+def is_torn(s, r):
+    """Whether the last state, of a dense output in a loop, is off the rows by more than
+    interpolation is.  Projection only: else the ends of steps are off them too."""
+    looked_at = s.near_rows > 0.0 and s.stabilisation == PROJECTION
+    return looked_at and off_the_rows(s, r, INTERPOLATED)
 
 
 @internal

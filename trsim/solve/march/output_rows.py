@@ -5,6 +5,7 @@ from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import all_finite, copy_to
 from trsim.solve.march.calls import INSIDE_AT, LOOK_AT, STEP_AT, call_look
 from trsim.solve.march.dense_output import astray, measure_inside
+from trsim.solve.march.turns import BRIEF
 
 SOON = 0.05  # of a step: a row so near to its start is as right as that
 SOONEST = 1e-3  # the same, of what is stiff
@@ -45,6 +46,17 @@ def of_none(s, r, b, setting, method, theta):
 
 
 @internal
+def torn(b, setting, method):
+    """Whether the row just measured is off the rows of joints by more than interpolation is, and
+    the step may be shorter.
+
+    Stages that only the dense output has may lie where branches nearly meet.
+    """
+    chosen = setting.fixed_step == 0.0 and method[STEP_AT] > 0
+    return b.torn > 0 and chosen and b.h > BRIEF * setting.t_end
+
+
+@internal
 def rows_until(s, r, b, setting, method):
     """Write the output rows of the step at hand; the one at its end is in b.out.
 
@@ -70,10 +82,11 @@ def rows_until(s, r, b, setting, method):
                 call_look(method[LOOK_AT], s, r, b, setting, t_o, 0)
             soon = SOON if b.restless == 0 else SOONEST
             late = t_o - b.t
-            if late > soon * b.h and (
-                felt(s, b, setting, method) or of_none(s, r, b, setting, method, late / b.h)
+            if torn(b, setting, method) or (
+                late > soon * b.h
+                and (felt(s, b, setting, method) or of_none(s, r, b, setting, method, late / b.h))
             ):
-                b.until = late
+                b.until = max(late, soon * b.h)
         if not all_finite(row) or b.until > 0.0:
             r.rows, r.next_row, r.opened = rows, next_row, 0
             return False

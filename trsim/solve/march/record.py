@@ -344,6 +344,7 @@ class Buffers(Packed):
     halved: I8  # 1: middle holds the channels of this step
     restless: I8  # 1: what is stiff did not come to rest
     moved: I8  # 1: the end of the step was moved on along its tangent
+    torn: I8  # 1: what was measured last inside a step is off the rows     dense_output.py
     astray: I8  # 1: what lies between two samples says nothing of the motion    peaks.py
     n_found: I8  # places between two samples that were looked at                peaks.py
     laid: I8  # how many there were when a lattice was laid
