@@ -22,7 +22,8 @@ joint coordinates and sensors (S, angles unwrapped), the states z, and writes wh
                 the element is exceeded, and its rate
     corners     corner[e] = how far the element has left the branch it remembers of a law with
                 corners (< 0: inside), and the branch to go on with; `force` keeps the largest
-                such value it meets in left[e]
+                such value it meets in left[e].  Where what rubs fully knows no sign of its speed,
+                slid[e, :3] = the velocity at which it slides, world axes, else 0
     energy      E[SPRINGS], E[CONTACTS], E[GRAVITY] += stored energy (J)
     stiffness   tangent, viscous: minus the derivatives of the forces of each element of a beam
     measure     (t, scene, e, o): out[o + c] = channel c, where somebody asked.  May also read the

@@ -303,6 +303,13 @@ def act_along(scene, e, f, turns):
 
 
 @internal
+def turned_round(scene, e, v_t):
+    """Whether what rubbed fully at the start of a step slides the other way round at v_t."""
+    slid = scene.slid
+    return slid[e, 3] * v_t[0] + slid[e, 4] * v_t[1] + slid[e, 5] * v_t[2] < 0.0
+
+
+@internal
 def relative_spin(V, i, j):
     """Angular velocity of body j against body i."""
     return minus(spin(V, j), spin(V, i))

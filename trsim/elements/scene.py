@@ -230,6 +230,7 @@ class Scene(Model):
     blow: T12  # (3, 12) wrenches of impulses of 1 of what strikes
     corner: T2  # (N, 2) how far an element has left its branch, and the branch it goes to
     left: A1  # (N) the largest such value since it was cleared
+    slid: T6  # (N, 6) how an element slides that rubs fully, m/s, and how at the start of the step
     E: A1  # (N_STORED) stored energy
     swing_box: A2  # (slots, 4) scratch: ranges of the parts of one of them
     out: A1  # (n_out) one output row
@@ -273,6 +274,7 @@ def scene(model: Model) -> Scene:
         (("mem",), (len(model.con), model.n_mem)),
         (("gap", "corner"), (len(model.con), 2)),
         (("left",), (len(model.con),)),
+        (("slid",), (len(model.con), 6)),
         (("blow",), (3, 12)),
         (("phi", "phi_t", "gamma", "lam"), (rows,)),
         (("J",), (len(model.line_row), 6)),

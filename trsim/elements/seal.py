@@ -14,6 +14,8 @@ on the two bodies.
 
 Friction has a corner where a point of the line reaches the speed `full_from`.  Steps end where the
 slowest of three points does; if the line slides as a whole, no other corner remains inside them.
+Beyond the ends of a branch friction goes on as on it: it stays full, FULL being so along the whole
+line, or grows with the speed of the slowest point.
 """
 
 from math import sqrt
@@ -47,6 +49,7 @@ from trsim.elements.frames import (
     points,
     push_apart,
     scaled,
+    turned_round,
     velocity,
 )
 from trsim.errors import ScenarioError
@@ -54,11 +57,10 @@ from trsim.fields import Spec, Unit, direction, vector
 from trsim.fields import point as place
 from trsim.kernels.columns import V3, f8, i8, run
 from trsim.kernels.lazy import internal
-from trsim.laws.friction import CODES, N_PARAMETERS, friction_force
+from trsim.laws.friction import CODES, FULL, N_PARAMETERS, ON_RAMP, friction_force
 from trsim.laws.seal import NODES, WEIGHTS, line_load, pressed_part
 
 MOST = 1000  # springs
-ON_RAMP, FULL = 1.0, 2.0  # branches of friction: FULL along the whole line
 
 
 class SealLine(Spec):
@@ -191,10 +193,22 @@ def meets(scene, e, n, p_j, compression):
 
 
 @internal
-def lossy(own, q, rate, v_t, n):
-    """Damping and friction on body j of a load q, N, and their power."""
-    speed = sqrt(dot(v_t, v_t))
+def drawn_on(own, slowest):
+    """What friction on its branch is at least, a part of the full one, and how many times what the
+    law makes of it."""
+    if own.branch == FULL:
+        return 1.0, 1.0
+    if own.branch == ON_RAMP:
+        return 0.0, max(slowest / own.friction[2], 1.0)
+    return 0.0, 1.0
+
+
+@internal
+def lossy(own, q, rate, v_t, n, branch):
+    """Damping and friction on body j of a load q, N, and their power; branch: see `drawn_on`."""
+    speed, (least, times) = sqrt(dot(v_t, v_t)), branch
     slow, _ = friction_force(own.friction_law, q, speed, 0.0, own.friction)
+    slow = times * min(slow, -least * own.friction[0] * q)
     damp = max(q * own.damping * rate, -q)
     f = scaled(damp, n)
     if speed > 0.0:
@@ -209,7 +223,7 @@ def load_at(own, x):
 
 
 @internal
-def lump(scene, e, u, weight):
+def lump(scene, e, u, weight, branch):
     """Arms, force on body j, its power as damping and as friction, of the part `weight` of the line
     at u; with its elastic force where that is a sum."""
     own = Own(scene, e)
@@ -217,7 +231,7 @@ def lump(scene, e, u, weight):
     x = x_0 + u * (x_1 - x_0)
     q = own.length * weight * load_at(own, x)
     c_i, c_j, rate, v_t = meets(scene, e, n, plus(p_j, scaled(u, along)), x)
-    f, damped, rubbed = lossy(own, q, rate, v_t, n)
+    f, damped, rubbed = lossy(own, q, rate, v_t, n, branch)
     if own.springs > 0:
         f = plus(f, scaled(q, n))
     return c_i, c_j, f, damped, rubbed
@@ -246,9 +260,13 @@ def force(t, scene, e):
     low, high = pressed_part(x_0, x_1)
     if low == high:
         return
+    branch = (0.0, 1.0)
     if own.friction_law != 0 and own.branch != WHOLE:
-        left = scene.left
-        left[e] = max(left[e], full_beyond(own, slowest_of(scene, e)))
+        left, (slowest, v_t) = scene.left, sliding(scene, e)
+        branch = drawn_on(own, slowest)
+        left[e] = max(left[e], full_beyond(own, slowest))
+        if turned_round(scene, e, v_t):
+            left[e] = max(left[e], own.friction[2])
     if own.springs == 0:
         whole, first, _ = line_load(x_0 / own.at, x_1 / own.at, own.exponent)
         u = first / whole if whole > 0.0 else 0.0
@@ -258,7 +276,7 @@ def force(t, scene, e):
             return
     for k in range(many(own)):
         u, weight = place_of(own, low, high, k)
-        c_i, c_j, f, damped, rubbed = lump(scene, e, u, weight)
+        c_i, c_j, f, damped, rubbed = lump(scene, e, u, weight, branch)
         push_apart(scene.F, own.i, c_i, own.j, c_j, f)
         scene.zd[IMPACTS] += damped
         scene.zd[FRICTION] += rubbed
@@ -280,24 +298,28 @@ def full_beyond(own, slowest):
 
 
 @internal
-def slowest_of(scene, e):
-    """The least sliding speed of both ends of the line and its middle."""
+def sliding(scene, e):
+    """The least sliding speed of both ends of the line and its middle, and how that slides."""
     n, p_j, along, x_0, x_1 = ends(scene, e)
-    least = 1e300
+    least, middle = 1e300, n
     for k in range(3):
         u = 0.5 * k
         _, _, _, v_t = meets(scene, e, n, plus(p_j, scaled(u, along)), x_0 + u * (x_1 - x_0))
         least = min(least, dot(v_t, v_t))
-    return sqrt(least)
+        if k == 1:
+            middle = v_t
+    return sqrt(least), middle
 
 
 @kernel
 def corners(t, scene, e):
-    out, own = scene.corner, Own(scene, e)
-    out[e, 0] = -1.0
+    out, slid, own = scene.corner, scene.slid, Own(scene, e)
+    out[e, 0], slid[e, 0], slid[e, 1], slid[e, 2] = -1.0, 0.0, 0.0, 0.0
     if own.phase == FLIGHT or own.friction_law == 0:
         return
-    slowest = slowest_of(scene, e)
+    slowest, middle = sliding(scene, e)
+    if own.branch == FULL:
+        slid[e, 0], slid[e, 1], slid[e, 2] = middle
     if own.branch == WHOLE:
         out[e, 1] = FULL if slowest > own.friction[2] else ON_RAMP
         return
@@ -328,14 +350,17 @@ def measure(t, scene, e, o):
     out, own = scene.out, Own(scene, e)
     n, _, _, x_0, x_1 = ends(scene, e)
     low, high = pressed_part(x_0, x_1)
-    total = scaled(0.0, n)
+    total, branch = scaled(0.0, n), (0.0, 1.0)
     if own.phase != FLIGHT and high > low:
+        if own.friction_law != 0 and own.branch != WHOLE:
+            slowest, _ = sliding(scene, e)
+            branch = drawn_on(own, slowest)
         if own.springs == 0:
             whole, _, _ = line_load(x_0 / own.at, x_1 / own.at, own.exponent)
             total = scaled(own.load * own.length * whole, n)
         for k in range(many(own)):
             u, weight = place_of(own, low, high, k)
-            _, _, f, _, _ = lump(scene, e, u, weight)
+            _, _, f, _, _ = lump(scene, e, u, weight, branch)
             total = plus(total, f)
     f_n = dot(n, total)
     f_t = minus(total, scaled(f_n, n))

@@ -53,6 +53,7 @@ from trsim.elements.frames import (
     points,
     push_apart,
     scaled,
+    turned_round,
     twist_apart,
 )
 from trsim.elements.outlines import outlined
@@ -82,7 +83,7 @@ from trsim.laws.force_tables import (
     rub_of,
     stored_in,
 )
-from trsim.laws.friction import beyond, branch_of, neighbour
+from trsim.laws.friction import FULL, beyond, branch_of, neighbour
 from trsim.laws.surfaces import PLANE, SPHERE
 
 DEEP = 0.2  # of the radius of a ball: deeper than that it is no longer one that touches a surface
@@ -216,6 +217,8 @@ def force(t, scene, e):
     c_i, c_j, n, depth, rate, v_t, speed = slides(scene, e)
     if own.branch != WHOLE:
         left[e] = max(left[e], beyond_branch(scene, own, depth, speed))
+        if turned_round(scene, e, v_t):
+            left[e] = max(left[e], own.friction[2])
     if depth <= 0.0 and own.phase != CONTACT:
         return
     # in contact bristles bend whatever rounding makes of a depth of nothing
@@ -273,18 +276,20 @@ def beyond_branch(scene, own, depth, speed):
 
 @kernel
 def corners(t, scene, e):
-    out, own = scene.corner, Own(scene, e)
-    out[e, 0] = -1.0
+    out, slid, own = scene.corner, scene.slid, Own(scene, e)
+    out[e, 0], slid[e, 0], slid[e, 1], slid[e, 2] = -1.0, 0.0, 0.0, 0.0
     rubs, tabled = own.friction_law == CORNERED, own.form == TABLE
     if own.phase != CONTACT or not (rubs or tabled):
         return
-    _, _, _, depth, _, _, speed = slides(scene, e)
+    _, _, _, depth, _, v_t, speed = slides(scene, e)
     tab, o, v0, v1 = scene.tab, own.table, own.friction[1], own.friction[2]
     if own.branch == WHOLE:
         rub = branch_of(speed, v0, v1) if rubs else 0.0
         out[e, 1] = rub + (PIECE * piece_at(tab, o, depth) if tabled else 0.0)
         return
     k, rub, by_rub = piece_of(own.branch), rub_of(own.branch), beyond_rub(own, speed)
+    if rub == FULL:
+        slid[e, 0], slid[e, 1], slid[e, 2] = v_t
     out[e, 0] = beyond_branch(scene, own, depth, speed)
     if tabled and not by_rub > beyond_piece(tab, o, k, depth):
         k = next_piece(tab, o, k, depth)

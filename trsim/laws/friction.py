@@ -21,6 +21,7 @@ from trsim.kernels.lazy import internal
 CODES = {"none": 0, "coulomb": 1, "modified_coulomb": 2, "sticking": 3}
 
 N_PARAMETERS = 6  # at most
+DEAD, ON_RAMP, FULL = 0.0, 1.0, 2.0  # branches of `modified_coulomb`, with the sign of the speed
 
 
 @internal

@@ -100,6 +100,19 @@ def together(total, squares, entries):
 
 
 @internal
+def squared(s, x, first, beyond):
+    """The sum of the squares of these entries, of turns at their arm: m^2 or m^2/s^2.
+
+    The weights of the error norm would not do: where rounding has shown (rounding.py) they make
+    little of an entry, whatever its error is.
+    """
+    total = 0.0
+    for c in range(first, beyond):
+        total += (s.scale[c] * x[c]) ** 2
+    return total
+
+
+@internal
 def frequency(turned, placed, h):
     """w^2 by the squares of |D v'| and |D x|, as far as a step h sees it."""
     widest = (WIDEST / h) ** 2

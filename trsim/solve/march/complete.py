@@ -7,7 +7,7 @@ from math import sqrt
 
 from trsim.assemble.equations import evaluate, kinetic
 from trsim.assemble.outputs import measure
-from trsim.elements.contract import FLIGHT, GRAVITY, SCENE, Memory, compiled
+from trsim.elements.contract import FLIGHT, GRAVITY, SCENE, ContactNumbers, Memory, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
@@ -50,7 +50,7 @@ from trsim.solve.march.earlier import keep_step
 from trsim.solve.march.events import NONE, ROUNDING, SAME
 from trsim.solve.march.features import call_meet, next_instant
 from trsim.solve.march.land import call_land, limits_to_measure
-from trsim.solve.march.norm import grow
+from trsim.solve.march.norm import RAMPS, grow
 from trsim.solve.march.output_rows import at_end, due, rows_until
 from trsim.solve.march.passes import call_passes
 from trsim.solve.march.peaks import call_finish, call_sample
@@ -314,7 +314,7 @@ def exact(s, r, b, setting, method, theta):
     """The step that ends on the event found at theta, for methods with a poor interpolant.
 
     A gap, what is watched, or u of a corner of a function is brought to zero at its end by Newton's
-    method; a corner of friction is good enough as found.
+    method; a corner of friction by secants, where what was found is not good enough.
     Where it ends close to a contact's event it is not made again: its end moves on along its
     tangent, which is off by (late / h)^2 of what changes in it.  Its stages do not: its dense
     output is that of the end before.
@@ -344,6 +344,10 @@ def exact(s, r, b, setting, method, theta):
         if restless(b, setting, h1) or unseen_error(s, r, b, setting, method, h1):
             return -1.0, 0.0, 0.0
         if gap_of < 0:
+            ends = on_corner(s, r, b, setting, theta, h1)
+            if 0.0 < ends <= h and ends != h1 and k < EXACT - 1:
+                h1 = ends
+                continue
             if method[BEYOND_AT] == 0:
                 return h1, 0.0, projected
             late = call_beyond(method[BEYOND_AT], s, b, t + h1)
@@ -374,6 +378,21 @@ def exact(s, r, b, setting, method, theta):
             b.moved = 0
         h1 -= late
     return 0.0, 0.0, 0.0
+
+
+@internal
+def on_corner(s, r, b, setting, theta, h):
+    """The step that ends on the corner of friction that was found at theta, by the secant through a
+    step h; h itself where it is as near as errors of sliding speeds are allowed to be.
+
+    The dense output of a step past the corner may be far off: some stages knew nothing of it.
+    """
+    for c in range(s.contact.size):
+        allowed = RAMPS * setting.step_error * ContactNumbers(s, c).ramp
+        if b.corner_root[c] <= theta and allowed > 0.0 and abs(b.corner1[c]) > allowed:
+            gone = b.corner1[c] - r.corner[c]
+            return h - h * b.corner1[c] / gone if gone > 0.0 else h
+    return h
 
 
 @internal

@@ -3,10 +3,13 @@
 A law with corners is followed on one branch, drawn on beyond its ends, so that every step sees
 smooth functions; where the element leaves its branch is an event like a touch.  It is looked for
 where the branch is left at the end of a step or at any stage of it.
+
+What rubs fully and slides the other way round later in the step has been at rest in between, though
+no stage may have come near to that: there it is looked for as well.
 """
 
 from trsim.assemble.equations import call_one, set_poses
-from trsim.elements.contract import CONTACT, WHOLE, Memory
+from trsim.elements.contract import CONTACT, WHOLE, ContactNumbers, Memory
 from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import call_interpolate
 from trsim.solve.march.illinois import between, narrowed
@@ -14,6 +17,25 @@ from trsim.solve.march.illinois import between, narrowed
 NONE = 2.0  # a root beyond the step
 EXACT = 1e-12  # of a step: how well a corner is located
 LOOKS = 16  # places of a step that are looked at before the root is bracketed
+HALVINGS = 50  # of a part of a step in which sliding turns round
+
+
+@internal
+def begin_sliding(s, r):
+    """Keep how elements slide that rub fully, at the start of a step."""
+    posed = False
+    for c in range(s.contact.size):
+        e = s.contact[c]
+        own = Memory(s, e)
+        for k in range(6):
+            s.slid[e, k] = 0.0
+        if ContactNumbers(s, c).ramp > 0.0 and own.phase == CONTACT and own.branch != WHOLE:
+            if not posed:
+                set_poses(s, r.y)
+                posed = True
+            call_one(s, s.corners, r.t, e)
+            for k in range(3):
+                s.slid[e, 3 + k] = s.slid[e, k]
 
 
 @internal
@@ -42,20 +64,48 @@ def beyond_inside(s, r, b, c, theta):
 
 
 @internal
+def onward(s, e):
+    """How far an element slides as at the start of the step, at the place looked at last."""
+    return s.slid[e, 0] * s.slid[e, 3] + s.slid[e, 1] * s.slid[e, 4] + s.slid[e, 2] * s.slid[e, 5]
+
+
+@internal
+def left_between(s, r, b, c, low, high):
+    """A place between two, where contact c slides on and back, at which it has left its branch, and
+    how far: where it comes to rest.  Where it turns round at some speed there may be none: -1."""
+    for _ in range(HALVINGS):
+        theta = 0.5 * (low + high)
+        f = beyond_inside(s, r, b, c, theta)
+        if f > 0.0:
+            return theta, f
+        if onward(s, s.contact[c]) > 0.0:
+            low = theta
+        else:
+            high = theta
+    return high, -1.0
+
+
+@internal
 def corner_root(s, r, b, c):
     """Where contact c first leaves its branch, as theta in [0, 1]; NONE if it does not."""
     e = s.contact[c]
     if Memory(s, e).phase != CONTACT or not (b.corner1[c] > 0.0 or s.left[e] > 0.0):
         return NONE
     low, f_low = 0.0, r.corner[c]
-    inside = f_low < 0.0
+    inside, on = f_low < 0.0, True
     for k in range(1, LOOKS + 1):
         theta = k / LOOKS
-        f = b.corner1[c] if k == LOOKS else beyond_inside(s, r, b, c, theta)
+        f = beyond_inside(s, r, b, c, theta)
+        back = onward(s, e) < 0.0
+        f = b.corner1[c] if k == LOOKS else f
         if inside and f > 0.0:
             return bracketed(s, r, b, c, (low, f_low), (theta, f))
+        if inside and on and back:
+            other, f_other = left_between(s, r, b, c, low, theta)
+            if f_other > 0.0:
+                return bracketed(s, r, b, c, (low, f_low), (other, f_other))
         if f < 0.0:
-            inside, low, f_low = True, theta, f
+            inside, low, f_low, on = True, theta, f, not back
     # it starts on a corner: away from it at once, or the branch was left only by a trial
     return 0.0 if not inside and b.corner1[c] > 0.0 else NONE
 

@@ -40,6 +40,7 @@ from trsim.solve.march.complete import (
     call_complete,
     complete,
 )
+from trsim.solve.march.corners import begin_sliding
 from trsim.solve.march.dense_output import measure_in
 from trsim.solve.march.features import next_instant
 from trsim.solve.march.land import land, limits_to_measure
@@ -177,6 +178,8 @@ def march(s, r, b, setting, methods, most):
         copy_to(b.K[0], r.yd)
         for c in range(s.contact.size):
             s.left[s.contact[c]] = -1.0
+        if setting.locate > 0:
+            begin_sliding(s, r)
         s.status[4] = s.status[6] = b.halved = 0
         r.blur = r.excess = 0.0
         r.top_acceleration = largest(s, r.yd, r.top_acceleration)

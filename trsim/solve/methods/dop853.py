@@ -22,6 +22,7 @@ from trsim.solve.march.accelerations import (
     in_units,
     largest,
     share,
+    squared,
     stiffness,
     together,
     unknown,
@@ -222,21 +223,21 @@ def inside(scene, r, b, setting, t, h):
     """The error of accelerations on the dense output in b.P, in units of what is allowed.
 
     Places and velocities are polynomials of degree 7 in theta, off by about LEFT of their last
-    terms: the end of the step, and the estimate of that, may be better by far.
+    terms: the end of the step, and the estimate of that, may be better by far, also where rounding
+    limits it.  No weights hide that here: LEFT of a last term has no more of rounding than the end.
     """
-    length, speed = setting.step_error * r.length, setting.step_error * r.speed
     ww = stiffness(r, h)
-    of_places = (min(r.vibration, ww) * LEFT * length) ** 2
-    of_rates = (min(r.decay, sqrt(ww)) * LEFT * speed) ** 2
+    of_places = (min(r.vibration, ww) * LEFT) ** 2
+    of_rates = (min(r.decay, sqrt(ww)) * LEFT) ** 2
     q, v, of_q, of_v = 0, scene.n_q, 3 if scene.d == 3 else 7, scene.d
     moved = off = of_squares = 0.0
     for _ in range(1, scene.n_r):
-        places = squares(b.P[6], b.weight, q, q + of_q)
-        rates = squares(b.P[6], b.weight, v, v + of_v)
+        places = squared(scene, b.P[6], q, q + of_q)
+        rates = squared(scene, b.P[6], v, v + of_v)
         q, v, moved = q + of_q, v + of_v, moved + places
         by = of_places * places + of_rates * rates
         off, of_squares = off + by, of_squares + by * by
-    if LEFT * sqrt(moved) * length < ROUNDED * furthest(scene, r.y, scene.size) or off == 0.0:
+    if LEFT * sqrt(moved) < ROUNDED * furthest(scene, r.y, scene.size) or off == 0.0:
         return 0.0
     off = together(off, of_squares, EACH)
     most = r.top_acceleration
