@@ -161,7 +161,7 @@ def test_a_dip_below_zero_is_two_crossings_where_it_is_lowest():
 
     alone = piece(
         sections.crossings, resolution=lambda b: 0.0, dip=dip, swung=nothing,
-        value=lambda s, r, b, what, theta: f(theta),
+        value=lambda s, r, b, what, theta: f(theta), inner=lambda s, r, b, k, place: f(place[2]),
         crossed=lambda s, r, b, k, ends, side: found.append(([x[0] for x in ends], side)),
     )  # fmt: skip
     alone(s, r, b, 0, 10)

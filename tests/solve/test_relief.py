@@ -17,7 +17,7 @@ def test_what_is_given_back_is_well_within_the_limit_of_stability(load, method):
     r = SimpleNamespace(
         method=IMPLICIT, stiff=0, not_stiff=0, history=1, jacobian=1, past_error=0.0,
         factored_h=0.0, next_look=0, explicit_rate=0.0, steps=40, method_switches=0, t=0.0,
-        event_rows=1, jacobian_rate=10.0 * load * STABLE,
+        event_rows=1, jacobian_rate=10.0 * load * STABLE, vibration=0.0, decay=0.0, fading=0,
     )  # fmt: skip
     s = SimpleNamespace(con=np.zeros((1, 2)))
     b = SimpleNamespace(events=np.zeros((2, rec.N_EVENT)))

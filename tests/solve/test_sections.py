@@ -74,7 +74,7 @@ def test_the_rate_of_a_channel_at_the_end_of_a_step_however_late(monkeypatch):
     """Of y^2 with y' = 3 at y = 2, told by what is a little ahead: 12."""
     t = 1e5
     s = SimpleNamespace(section=np.zeros((1, 8), int), section_at=np.zeros((1, 8)), out=np.zeros(1))
-    s.section[0, sections.KIND] = sections.CROSSING
+    s.section[0, sections.KIND], s.section[0, sections.ALONE] = sections.CROSSING, -1
     r = SimpleNamespace(section=np.ones((1, 40)), work_projection=0.0, energy_0=0.0)
     b = SimpleNamespace(
         t=t, t1=t + 0.01, built=0, P=np.zeros((1, 1)), K=np.full((2, 1), 3.0), y1=np.full(1, 2.0),
@@ -87,6 +87,7 @@ def test_the_rate_of_a_channel_at_the_end_of_a_step_however_late(monkeypatch):
     monkeypatch.setattr(sections, "measure", measure)
     monkeypatch.setattr(sections, "evaluate_to_measure", lambda *_: None)
     monkeypatch.setattr(sections, "crosses_after", sections.crosses_after.python)
+    monkeypatch.setattr(sections, "all_alone", sections.all_alone.python)
     sections.ends_known.python(s, r, b, 1, 0)
     assert r.section[0, sections.END_RATE] == pytest.approx(12.0, rel=1e-4)
 

@@ -86,7 +86,9 @@ def torn_from_rows(s, r, b, method):
     estimate of its error knows of them, and the dense output is a polynomial through both.  It is
     off the rows by more than interpolation is.
     """
-    if s.near_rows == 0.0 or r.driven > 0 or smallest_pivot(s) > SHARP:
+    if s.near_rows == 0.0 or s.redundant.shape[0] > 0:
+        return False
+    if r.driven > 0 or smallest_pivot(s) > SHARP:
         return False
     if b.built == 0:
         build(s, r, b, method)

@@ -229,8 +229,12 @@ def off_the_rows(s, r, share):
 @internal
 def is_torn(s, r):
     """Whether the last state, of a dense output in a loop, is off the rows by more than
-    interpolation is.  Projection only: else the ends of steps are off them too."""
-    looked_at = s.near_rows > 0.0 and s.stabilisation == PROJECTION
+    interpolation is.
+
+    Projection only: else the ends of steps are off them too.  Where rows are redundant what is
+    measured inside steps is drawn through places around it (measure_in).
+    """
+    looked_at = s.near_rows > 0.0 and s.stabilisation == PROJECTION and s.redundant.shape[0] == 0
     return looked_at and off_the_rows(s, r, INTERPOLATED)
 
 

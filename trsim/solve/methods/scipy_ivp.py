@@ -285,8 +285,8 @@ def restarted(run: Run, finer: float, most: float = np.inf) -> tuple[Any, float]
     t = float(r.t)
     until = next_time(s, t, setting.t_end)
     first = min(float(r.h), until - t)
-    if finer < 1.0:
-        first = min(first, FIRST / float(swings(s, r, b)))
+    if finer < 1.0 and (w := float(swings(s, r, b))) > 0.0:
+        first = min(first, FIRST / w)
     most = min(most, longest(setting, b))
     made = make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
                 max_step=most, rtol=RELATIVE, atol=atol, **more)  # fmt: skip
@@ -349,7 +349,10 @@ def at_first(run: Run, h: float) -> float:
     s, r, setting = run.s, run.r, run.setting
     if s.contact.size > 0 or not settles.python(s):
         return 1.0
-    w = min(float(swings(s, r, run.b)), WIDEST / h)
+    w = float(swings(s, r, run.b))
+    if w == 0.0:
+        return 1.0
+    w = min(w, WIDEST / h)
     r.top_acceleration = most = float(largest.python(s, r.yd, r.top_acceleration))
     off = w * hypot(w * float(r.length), float(r.speed)) * sqrt(s.n_r - 1)
     off *= most / max(most, w * float(r.speed) / FURTHEST)
