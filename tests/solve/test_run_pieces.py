@@ -216,7 +216,7 @@ def test_what_accelerations_allow_of_a_step_is_the_same_in_any_unit_of_time(monk
         x, v = np.sin(6.0 * theta), 60.0 / unit * np.cos(6.0 * theta)
         weight = np.array([1.0 / 0.5, unit / 2.0])
         b = SimpleNamespace(P=np.stack([x, v], axis=1), weight=weight / 1e-4)
-        run = ("DOP853", s, r, b, SimpleNamespace(step_error=1e-4))
+        run = scipy_ivp.Run("DOP853", s, r, b, SimpleNamespace(step_error=1e-4))
         found.append(scipy_ivp.of_accelerations(run, 0.1 * unit, 1.0))
     assert 0.0 < found[0] < 1.0
     assert found == pytest.approx([found[0]] * 3, rel=1e-9)

@@ -143,6 +143,15 @@ def test_a_small_vibration_beside_a_larger_motion(method, first):
     assert not wrong
 
 
+@pytest.mark.parametrize(
+    "method, seed",
+    [("scipy:BDF", 113), ("scipy:BDF", 900), ("scipy:Radau", 503), ("scipy:Radau", 3810)],
+)
+def test_first_steps_of_scipy_see_what_vibrates(method, seed):
+    """Of order 1, or of many radians: they were off by 180 to 760 tolerances."""
+    assert off(seed, method).max() < ALLOWED
+
+
 LONG = (43, 51)  # seeds that take scipy's method 2 s: it sees a quarter of their time
 
 

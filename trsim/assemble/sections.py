@@ -42,7 +42,7 @@ def sections(
         x, y = (column_of(c, there, (SECTION, name, "plot", k)) for k, c in enumerate(spec.plot))
         kind, when = surface(scenario, name, spec, instances, there)
         waving = kind == CROSSING and not smooth(there[stored(spec.when, there)[0]], functions)
-        alone = moving(stored(spec.when, there)[0], instances) if kind == CROSSING else -1
+        alone = alone_in(stored(spec.when, there)[0], instances) if kind == CROSSING else -1
         rows.append((kind, when, DIRECTIONS[spec.crosses], x, y, int(waving), alone))
         at.append((spec.after, spec.every or 0.0))
         units = [there[stored(c, there)[0]].unit for c in spec.plot]
@@ -59,7 +59,7 @@ def sections(
     return fields, tuple(found)
 
 
-def moving(name: str, instances: list[Instance]) -> int:
+def alone_in(name: str, instances: list[Instance]) -> int:
     """The row of the element whose channel this is, if it is of places and rates alone; else -1."""
     for e, instance in enumerate(instances):
         for channel in instance.channels:

@@ -148,9 +148,8 @@ class Taking:
         wanted = [c for c in mechanism.columns if c.wanted or c.name in self.planned.columns]
         columns = {"time": rows[:, 0]}
         columns |= {c.name: columns_of(rows, 1 + c.start, c.size) for c in wanted}
-        extremes, magnitudes = None, peaks.Magnitudes(mechanism.columns)
-        if outcome is not None:
-            extremes = outcome.peaks
+        extremes = None if outcome is None else outcome.peaks
+        magnitudes = peaks.Magnitudes(mechanism.columns)
         if extremes is None and len(rows):
             magnitudes.update(rows)
         found = peaks.table(mechanism, extremes, magnitudes)

@@ -8,6 +8,8 @@ What rubs fully and slides the other way round later in the step has been at res
 no stage may have come near to that: there it is looked for as well.
 """
 
+from math import inf
+
 from trsim.assemble.equations import call_one, set_poses
 from trsim.elements.contract import CONTACT, WHOLE, ContactNumbers, Memory
 from trsim.kernels.lazy import internal
@@ -25,11 +27,13 @@ def begin_sliding(s, r):
     """Keep how elements slide that rub fully, at the start of a step."""
     posed = False
     for c in range(s.contact.size):
-        e = s.contact[c]
+        e, numbers = s.contact[c], ContactNumbers(s, c)
+        if not (numbers.ramp > 0.0 and numbers.clearance == inf):  # a journal knows which way
+            continue
         own = Memory(s, e)
         for k in range(6):
             s.slid[e, k] = 0.0
-        if ContactNumbers(s, c).ramp > 0.0 and own.phase == CONTACT and own.branch != WHOLE:
+        if own.phase == CONTACT and own.branch != WHOLE:
             if not posed:
                 set_poses(s, r.y)
                 posed = True

@@ -262,8 +262,7 @@ def look(s, r, b, setting, method, where):
     place = min(place, t + h)
     theta = (place - t) / h
     call_measure_in(b.measure_in, s, r, b, int(earlier), place, theta)
-    of_none = b.torn > 0 or astray(s, r, b, setting, int(earlier), theta)
-    if method[INSIDE_AT] > 0 and of_none:
+    if method[INSIDE_AT] > 0 and (b.torn > 0 or astray(s, r, b, setting, int(earlier), theta)):
         b.astray = 1
         return
     gather(s, b.full, s.out, b.inside[k])

@@ -338,9 +338,7 @@ class Buffers(Packed):
     measure_in: I8  # and of what measures channels inside a step        dense_output.py
     built: I8  # 1: P holds it
     parts: I8  # in how many parts events look at channels in it, 0: not asked yet         heard.py
-    alone: (
-        I8  # 1: places inside it are taken as interpolated                             sampled.py
-    )
+    alone: I8  # 1: places inside it are taken as interpolated                sampled.py
     halved: I8  # 1: middle holds the channels of this step
     restless: I8  # 1: what is stiff did not come to rest
     moved: I8  # 1: the end of the step was moved on along its tangent

@@ -36,7 +36,8 @@ def value(s, r, b, what, theta):
     column, at, alone = what
     if alone >= 0 and b.alone > 0:
         call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
-        look_alone(s, b.t + theta * b.h, b.y2, alone)
+        set_poses(s, b.y2)
+        call_one(s, s.measure, b.t + theta * b.h, alone)
     else:
         measure_inside(s, r, b, b.t + theta * b.h, theta)
     return s.out[column] - at
@@ -57,14 +58,7 @@ def as_interpolated(s, r, b, turn):
 
 
 @internal
-def look_alone(s, t, y, e):
-    """The channels of one element that are of places and rates alone, at a state."""
-    set_poses(s, y)
-    call_one(s, s.measure, t, e)
-
-
-@internal
-def turned(s, r, b, last):
+def turn_of(s, r, b, last):
     """By how much the fastest body turns in the step, rad."""
     return max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last])) * (b.t1 - b.t)
 
@@ -72,7 +66,7 @@ def turned(s, r, b, last):
 @internal
 def parts_of(s, r, b, last):
     """In how many parts a step is looked at."""
-    return parts_for(r, turned(s, r, b, last) / TURN)
+    return parts_for(r, turn_of(s, r, b, last) / TURN)
 
 
 @internal

@@ -25,6 +25,7 @@ Nothing here has a part in the motion: a run makes the same steps with its secti
 
 from math import isfinite, log10
 
+from trsim.assemble.equations import call_one, set_poses
 from trsim.assemble.outputs import measure
 from trsim.assemble.sections import (
     AFTER,
@@ -69,11 +70,10 @@ from trsim.solve.march.sampled import (
     TURN,
     as_interpolated,
     dip,
-    look_alone,
     parts_for,
     resolution,
     root,
-    turned,
+    turn_of,
     value,
     waves_of,
 )
@@ -92,7 +92,7 @@ def sections(s, r, b, method, event):
     """
     last, built, t1 = method[LAST_AT], b.built, b.t1
     counted = (s.status[0], s.status[1], s.status[2], s.status[3])
-    turn = turned(s, r, b, last)
+    turn = turn_of(s, r, b, last)
     b.alone = int(as_interpolated(s, r, b, turn))
     for j in range(b.looked.size):
         b.looked[j] = 0
@@ -211,7 +211,12 @@ def ends_known(s, r, b, last, event):
         ahead = AHEAD * (t1 - t)
         for c in range(b.y2.size):
             b.y2[c] = b.y1[c] + ahead * b.K[last, c]
-        if not all_alone(s, t1 + ahead, b.y2):
+        if all_alone(s):
+            set_poses(s, b.y2)
+            for k in range(s.section.shape[0]):
+                if s.section[k, KIND] == CROSSING:
+                    call_one(s, s.measure, t1 + ahead, s.section[k, ALONE])
+        else:
             evaluate_to_measure(s, t1 + ahead, b.y2, scratch)
             measure(s, t1 + ahead, b.y2, done, energy_0)
         for k in range(s.section.shape[0]):
@@ -221,14 +226,11 @@ def ends_known(s, r, b, last, event):
 
 
 @internal
-def all_alone(s, t, y):
-    """Look at all `when` of crossings at a state, where places and rates tell them alone."""
+def all_alone(s):
+    """Whether places and rates alone tell `when` of every crossing."""
     for k in range(s.section.shape[0]):
         if s.section[k, KIND] == CROSSING and s.section[k, ALONE] < 0:
             return False
-    for k in range(s.section.shape[0]):
-        if s.section[k, KIND] == CROSSING:
-            look_alone(s, t, y, s.section[k, ALONE])
     return True
 
 
@@ -314,7 +316,7 @@ def inner(s, r, b, k, place):
     """`when` of section k at the j-th of so many places; where forces are evaluated for it all
     sections look at once."""
     j, parts, theta = place
-    if b.alone > 0 or parts != PARTS:
+    if parts != PARTS or (b.alone > 0 and s.section[k, ALONE] >= 0):
         return value(s, r, b, what_of(s, k), theta)
     if b.looked[j] == 0:
         measure_inside(s, r, b, b.t + theta * b.h, theta)

@@ -170,7 +170,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         hand_over(solver, b)
         before = finer
         seen = getattr(solver, "order", SEEING) >= SEEING
-        finer = of_accelerations(run, h, before) if seen else at_first(run, h)
+        finer = of_accelerations(run, h, before) if seen else at_first(run, h)[0]
         finer = min(finer, EASED * before)
         if finer < TOO_LONG * before:
             r.h = 0.3 * h
@@ -266,7 +266,8 @@ def restarted(run: Run, finer: float, most: float = np.inf) -> tuple[Any, float]
         derivative(s, t, y if y.flags.c_contiguous else y.copy(), yd)
         return yd
 
-    finer = min(finer, at_first(run, float(r.h)))
+    part, w = at_first(run, float(r.h))
+    finer = min(finer, part)
     atol = allowed(run, finer)
     # scipy's own differences begin at 1e-8 of an entry or of its error: far below rounding where
     # a body is 50 m from the origin and entries of its quaternion are zero
@@ -285,7 +286,7 @@ def restarted(run: Run, finer: float, most: float = np.inf) -> tuple[Any, float]
     t = float(r.t)
     until = next_time(s, t, setting.t_end)
     first = min(float(r.h), until - t)
-    if finer < 1.0 and (w := float(swings(s, r, b))) > 0.0:
+    if finer < 1.0 and w > 0.0:
         first = min(first, FIRST / w)
     most = min(most, longest(setting, b))
     made = make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
@@ -328,10 +329,7 @@ def of_accelerations(run: Run, h: float, finer: float) -> float:
         """How far an error turns in the step, and what it makes of accelerations."""
         v = h * max(third - SHOWN * speed * allowed - unseen, 0.0)
         turns = min(sqrt(v / max(x, BLIND * s.size)), WIDEST)
-        w = turns / h
-        # all of a mean over the bodies may be of one
-        off = w * hypot(w * length, speed) * sqrt(s.n_r - 1)
-        return turns, off * most / max(most, w * speed / FURTHEST)
+        return turns, made_at(run, turns / h)
 
     if made(0.0)[1] <= mine:
         return 1.0
@@ -339,25 +337,36 @@ def of_accelerations(run: Run, h: float, finer: float) -> float:
     rounding = of_rounding(run)
     turns, off = made(NOISE * h * rounding)
     mine = max(mine, max(turns, 1.0) * rounding)
-    finest = RELATIVE / setting.step_error  # below it only rounding is left
-    return min(1.0, max(finest, mine / off)) if off > 0.0 else 1.0
+    return part_of(run, mine, off)
 
 
-def at_first(run: Run, h: float) -> float:
+def made_at(run: Run, w: float) -> float:
+    """What the error allowed to places and velocities makes of accelerations at a frequency w; all
+    of a mean over the bodies may be of one."""
+    r, speed = run.r, float(run.r.speed)
+    off = w * hypot(w * float(r.length), speed) * sqrt(run.s.n_r - 1)
+    most = float(r.top_acceleration)
+    return off * most / max(most, w * speed / FURTHEST) if off > 0.0 else 0.0
+
+
+def at_first(run: Run, h: float) -> tuple[float, float]:
     """The same before a step, or behind one whose polynomial has no third derivative, by what
-    vibrates in the motion."""
+    vibrates in the motion; and the frequency of that, 0 where nothing does."""
     s, r, setting = run.s, run.r, run.setting
     if s.contact.size > 0 or not settles.python(s):
-        return 1.0
+        return 1.0, 0.0
     w = float(swings(s, r, run.b))
     if w == 0.0:
-        return 1.0
-    w = min(w, WIDEST / h)
+        return 1.0, 0.0
     r.top_acceleration = most = float(largest.python(s, r.yd, r.top_acceleration))
-    off = w * hypot(w * float(r.length), float(r.speed)) * sqrt(s.n_r - 1)
-    off *= most / max(most, w * float(r.speed) / FURTHEST)
     mine = float(share.python(s, setting, h, ONE)) * most
-    finest = RELATIVE / setting.step_error
+    return part_of(run, mine, made_at(run, min(w, WIDEST / h))), w
+
+
+def part_of(run: Run, mine: float, off: float) -> float:
+    """Of the error allowed, what makes no more than `mine` of accelerations where all of it makes
+    `off`; below the finest only rounding is left."""
+    finest = RELATIVE / run.setting.step_error
     return min(1.0, max(finest, mine / off)) if off > 0.0 else 1.0
 
 
