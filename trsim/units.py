@@ -7,7 +7,7 @@ dimension of its own, so that rpm and Hz, or N*m and N*m/rad, cannot be mixed up
 import math
 import re
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from trsim.errors import ScenarioError, described, known
@@ -87,6 +87,7 @@ KINDS = {
     "W": "a power",
 }
 
+AGAIN = 4096  # numbers with units that are remembered: cases of a sweep have the same few
 FORM = "Write it like N*m/rad or m/s^2."
 _WORD = re.compile(r"\s*(?:([A-Za-zµ°%]+[0-9]*)|([0-9]+(?:\.[0-9]+)?)|(\*\*|[*/^()-]))")
 _PLAIN = str.maketrans({"μ": "µ", "·": "*", "²": "^2", "³": "^3"})
@@ -263,8 +264,14 @@ def quantity(
         raise no_unit(error.what, *error.asked, wanted) from None
     # decimal fractions are exact: 0.7 mm is the same number as 0.0007
     if isinstance(factor, Fraction) and 1e-99 < abs(value) < 1e99:
-        return float(Fraction(number) * factor), rest
+        return _exactly(number, factor), rest
     return value * float(factor), rest
+
+
+@lru_cache(AGAIN)
+def _exactly(number: str, factor: Fraction) -> float:
+    """A decimal fraction times a factor, rounded once."""
+    return float(Fraction(number) * factor)
 
 
 @cache

@@ -59,8 +59,8 @@ def test_no_more_are_made_than_are_sent_soon():
 
 def test_a_thread_hands_back_what_it_was_given_too_much(monkeypatch):
     class Slot(SimpleNamespace):
-        def run(self, task):
-            return {**DONE, "of": task["name"]}
+        def run(self, message):
+            return {**DONE, "of": message.task["name"]}
 
     monkeypatch.setattr(dask, "Slot", lambda limits, job: Slot(limits=limits, job=job))
     monkeypatch.setattr(dask, "_here", SimpleNamespace())

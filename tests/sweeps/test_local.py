@@ -39,6 +39,16 @@ def test_each_task_ends(tmp_path):
     )
 
 
+def test_the_next_task_is_made_while_a_process_works(tmp_path):
+    def made():
+        for k, task in enumerate(tasks(tmp_path, *["wait"] * 4, "end")):
+            (tmp_path / f"made{k}").touch()
+            yield task
+
+    found = ended(local.run(made(), 1, job=JOB))
+    assert [found[f"t{k}"]["reason"] for k in range(4)] == [f"t{k + 1}" for k in range(4)]
+
+
 def test_none_are_none():
     assert list(local.run([], 2, job=JOB)) == []
 

@@ -52,7 +52,9 @@ def extreme(run: Run, word: str, channel: str, within: Window, part: bool) -> Ex
 
 def _best(of: str, time: Array, x: Array, sign: float, within: Window) -> list[Extreme]:
     """The extreme of some values in a window, if there are any."""
-    inside = within.of(time) & (x == x)
+    inside = x == x
+    if not (time.size and within.begin <= time[0] and time[-1] <= within.end):
+        inside &= within.of(time)
     if not inside.any():
         return []
     time, x = time[inside], x[inside]

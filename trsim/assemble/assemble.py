@@ -70,7 +70,7 @@ def assemble(
         check_shaky(look, instances, planar, chosen)
     d = 3 if planar else 6
     own = hubs(look, kept, planar, spans(at))
-    model = build(parts, kept, d, own, dropped(rows, found))
+    model = build(parts, kept, d, own, dropped(rows, found), look.scene)
     y0 = drawn(at, d)
     columns: list[Column] = []
     shown: tuple[Section, ...] = ()
@@ -129,7 +129,8 @@ def stages(at: Addresses, instances: list[Instance], first: Choice, planar: bool
         chosen = choose_rows(look, instances, planar)
         check_rubbing(instances, rows, reactions(look, chosen, planar)[1], chosen.found)
         own, left = hubs(look, chosen.kept, planar, spans(at)), dropped(rows, chosen.found)
-        return Choice(build(parts, chosen.kept, d, own, left), chosen.kept, left)
+        model = build(parts, chosen.kept, d, own, left, look.scene)
+        return Choice(model, chosen.kept, left)
 
     def rebuilt(instances: list[Instance], kept: list[RowName], left: list[RowName]) -> Model:
         parts, rows = Parts.of(at, instances), [*kept, *left]

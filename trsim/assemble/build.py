@@ -125,11 +125,12 @@ def build(
     d: int,
     hubs: Hubs | None = None,
     redundant: Sequence[RowName] = (),
+    like: Model | None = None,
 ) -> Model:
     """The arrays of a model with the given constraint rows, without outputs.
 
     hubs: those of its solve; without them its rows can be looked at, and its equations not solved.
-    redundant: rows that are looked at only.
+    redundant: rows that are looked at only.  like: another model of the same parts, made before.
     """
     at, instances, sizes, shared = parts
     n, size, contacts = len(at.frames), shared["size"], shared["contact"].tolist()
@@ -145,7 +146,8 @@ def build(
         unfit([at.owners[f] for f in of.light], of.light, [i.row for i in instances],
               len(shared["rubbing"]) > 0)  # fmt: skip
     return Model(
-        **shared,
+        like,
+        **(shared if like is None else {}),
         d=d,
         d_node=d_node,
         n_q=q_node + d_node * n_nodes,

@@ -16,6 +16,7 @@ The damping factor chi follows from the restitution c_r.  With u = d'/d0' and an
 so the delivered restitution e depends on chi alone, not on mass, speed, K or n.
 """
 
+from functools import cache
 from math import asinh, exp, gamma, inf, pi, sqrt
 from typing import NamedTuple
 
@@ -263,6 +264,7 @@ def _root(f, low, high):
     return mid
 
 
+@cache  # cases of a sweep have the same few
 def delivered_restitution(chi):
     """Restitution that a damping factor truly delivers in a free impact.
 

@@ -5,6 +5,7 @@ wide, so that a scenario somebody thought about is silent.
 """
 
 from collections.abc import Iterator
+from functools import partial
 from math import ceil, dist, hypot, inf, pi, sqrt
 from typing import Any
 
@@ -31,8 +32,10 @@ NARROW = 1e-5  # m/s over which friction turns round
 
 def lint(scenario: Any) -> tuple[str, ...]:
     """What looks wrong in a validated scenario: "section.name: what; what to do"."""
+    points = plausible.points(scenario)
     checks = (
-        *(_inertias, _sizes, plausible.densities, plausible.moduli, plausible.coefficients),
+        *(_inertias, partial(_sizes, points), partial(plausible.densities, points)),
+        *(plausible.moduli, plausible.coefficients),
         *(_conformity, _restitutions, _speeds, _stops, _fixed_step, _ignored_step, _ground, _rows),
         *(slender, strangers, _unused),
     )
@@ -85,9 +88,8 @@ def _principal(body: Any) -> list[float]:
     return np.linalg.eigvalsh(np.reshape(body.tensor[0], (3, 3))).tolist()  # type: ignore[no-any-return]
 
 
-def _sizes(scenario: Any) -> Iterator[str]:
+def _sizes(points: plausible.Places, scenario: Any) -> Iterator[str]:
     """Radius of gyration against the reach of the points where others hold the body."""
-    points = plausible.points(scenario)
     everywhere = [p for of_body in points.values() for p in of_body]
     everywhere += [body.at for _, body in plausible.rigid(scenario)]
     size = max((dist(p, everywhere[0]) for p in everywhere), default=0.0)

@@ -37,10 +37,10 @@ def loads(
     return of_tree(expand.expand_text(text, sets, name, folder), text)
 
 
-def of_data(data: dict) -> Scenario:
-    """The scenario of data that are complete and were read before, such as those of a case: what
-    is wrong with it has no place in a file."""
-    return of_tree(Tree(data), "")
+def of_case(data: dict) -> Scenario:
+    """The scenario of data that are complete and were read before, one of many much alike in this
+    process: what is wrong with it has no place in a file."""
+    return of_tree(Tree(data), "", Memory.lasting(data))
 
 
 def valid(data: dict, memory: Memory) -> bool:
@@ -68,8 +68,8 @@ def locate(error: TrsimError, scenario: Scenario) -> TrsimError:
     return error
 
 
-def of_tree(tree: Tree, text: str) -> Scenario:
-    """The scenario of a tree that is complete; text: as given."""
+def of_tree(tree: Tree, text: str, memory: Memory | None = None) -> Scenario:
+    """The scenario of a tree that is complete; text: as given; memory: of specs made before."""
     values, faults = expand.parameters(tree)
     whole, more = unfold(tree, values)
     problems: list[TrsimError] = [
@@ -83,7 +83,8 @@ def of_tree(tree: Tree, text: str) -> Scenario:
         problems += _unfolded(fault, path, whole)
     try:
         data = {**whole.entries(), "parameters": values}
-        scenario = Scenario.model_validate(data, context={"parameters": values})
+        context = {"parameters": values, "memory": memory}
+        scenario = Scenario.model_validate(data, context=context)
         problems += sizes(scenario)
     except (ValidationError, SpecError) as error:
         problems += _unfolded(error, (), whole)

@@ -2,24 +2,41 @@
 
 import json
 import re
+from functools import lru_cache
 from typing import Any
 
 from trsim.scenario.merge import mapping, merged
 from trsim.scenario.unfolded import Scope
 
+MOST = 1000  # specs that are known at once from case to case: those just before are much alike
+
 
 class Memory:
-    """Specs that were made already; see scenario/load.py.  data: of one of the scenarios."""
+    """Specs that were made already; see scenario/load.py.
 
-    def __init__(self, data: dict[str, Any]) -> None:
+    names: of all parameters and points of the scenarios, see `named`.
+    """
+
+    def __init__(self, names: frozenset[str]) -> None:
         self.made: dict[tuple, Any] = {}
         self.pieces: dict[int, tuple[Any, str, list[str]]] = {}  # the data is kept: its id is too
         self.joined: dict[tuple[int, int], tuple[Any, Any, Any]] = {}
-        of = [data, *mapping(data, "templates").values()]
-        names = {
-            name for one in of for key in ("parameters", "points") for name in mapping(one, key)
-        }
-        self.word = re.compile("|".join(rf"\b{name}\b" for name in names) or r"(?!)")
+        self.word = re.compile("|".join(rf"\b{name}\b" for name in sorted(names)) or r"(?!)")
+
+    @classmethod
+    def of(cls, data: dict[str, Any]) -> "Memory":
+        """One for scenarios with the names of this data."""
+        return cls(named(data))
+
+    @classmethod
+    def lasting(cls, data: dict[str, Any]) -> "Memory":
+        """One that knows what cases before this one had, of which their data are gone."""
+        memory = _lasting(named(data))
+        memory.pieces.clear()
+        memory.joined.clear()
+        if len(memory.made) > MOST:
+            memory.made.clear()
+        return memory
 
     def key(
         self,
@@ -48,3 +65,14 @@ class Memory:
         if key not in self.joined:
             self.joined[key] = base, over, merged(base, over)
         return self.joined[key][2]
+
+
+def named(data: dict[str, Any]) -> frozenset[str]:
+    """The names of the parameters and points of a scenario, and of its templates."""
+    of = [data, *mapping(data, "templates").values()]
+    return frozenset(
+        name for one in of for key in ("parameters", "points") for name in mapping(one, key)
+    )
+
+
+_lasting = lru_cache(8)(Memory)

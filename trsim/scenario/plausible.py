@@ -22,6 +22,7 @@ POISSON = 0.3  # where a law that gives K says nothing
 STICKIEST = 2.0  # rubber on rubber is about 1
 LIGHTEST, HEAVIEST = 1.0, 3e4  # kg/m^3; osmium is 22 600
 WIRE = 100.0  # length over thickness
+Places = dict[str, list[tuple[float, ...]]]  # body -> where it is held, as drawn
 
 
 def moduli(scenario: Any) -> Iterator[str]:
@@ -99,9 +100,11 @@ def slides(scenario: Any) -> set[str]:
     }
 
 
-def densities(scenario: Any) -> Iterator[str]:
-    """Mass of each body against its extent; a body held at one point has none to speak of."""
-    held = points(scenario)
+def densities(held: Places, scenario: Any) -> Iterator[str]:
+    """Mass of each body against its extent; a body held at one point has none to speak of.
+
+    held: `points`.
+    """
     sliding = slides(scenario)
     for name, body in rigid(scenario):
         places = [*held.get(name, ()), body.at]
@@ -159,9 +162,9 @@ def wheels(scenario: Any, joint: Any) -> Iterator[tuple[str, Any, float]]:
             yield own[0], hinge, radius
 
 
-def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
+def points(scenario: Any) -> Places:
     """Where joints and forces hold each body, as drawn."""
-    found: dict[str, list[tuple[float, ...]]] = {}
+    found: Places = {}
 
     def add(body: str | None, at: Any) -> None:
         if body is not None and at is not None:

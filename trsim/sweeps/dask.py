@@ -21,7 +21,7 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from trsim.errors import FileError, UsageError
-from trsim.sweeps.slot import Limits, Slot
+from trsim.sweeps.slot import Limits, Message, Slot
 from trsim.sweeps.worker import JOB
 
 CONNECTING = 10.0  # s
@@ -62,7 +62,7 @@ def attempt(
     found, began = [], time.monotonic()
     for task in batch:
         at = time.monotonic()
-        ended = kept.run(task)
+        ended = kept.run(Message.of(task))
         now = time.monotonic()
         found.append((now - at, ended))
         if now - began > enough:

@@ -28,7 +28,7 @@ from trsim.sweeps.plan import Case, Plan, named_file
 from trsim.sweeps.records import Records, Sizes
 from trsim.version import __version__
 
-WRITTEN, RARELY = 1.0, 20.0  # s between two writings of the index; of the time one takes
+WRITTEN, RARELY = 1.0, 100.0  # s between two writings of the index; of the time one takes
 Runner = Callable[[Iterable[dict[str, Any]]], Iterable[tuple[dict[str, Any], dict[str, Any]]]]
 
 

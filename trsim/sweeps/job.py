@@ -67,12 +67,12 @@ def brief(summary: dict[str, Any]) -> dict[str, Any]:
 
 def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
     from trsim.assemble.assemble import assemble
-    from trsim.scenario.load import of_data
+    from trsim.scenario.load import of_case
     from trsim.solve.simulate import simulate
     from trsim.store.hdf5 import Around, write
 
     target = Path(task["target"])
-    scenario = of_data(task["resolved"])
+    scenario = of_case(task["resolved"])
     scenario._text = task["text"]
     scenario._tree.files = dict(task["files"])
     passes = ""

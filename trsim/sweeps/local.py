@@ -2,15 +2,15 @@
 
 import queue
 import threading
+from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import wait
 from typing import Any
 
-from trsim.sweeps.slot import ANY, Limits, Slot
+from trsim.sweeps.slot import ANY, Limits, Message, Slot, Task
 from trsim.sweeps.worker import JOB
 
 LOOK = 0.2  # s between two looks for a signal
-Task = dict[str, Any]
 
 
 def run(
@@ -21,25 +21,32 @@ def run(
 
     first_alone: the others wait for the first one, which compiles what all need.  kept: slots of
     an earlier call for the same job, or none yet, whose processes stay for the next one; they are
-    the caller's to close.  Ended early, by an exception or by closing the generator, it leaves no
-    process behind.
+    the caller's to close.  While processes work the next tasks are made, one for each of them, so
+    that none waits for its next.  Ended early, by an exception or by closing the generator, it
+    leaves no process behind.
     """
-    waiting, turn = iter(tasks), threading.Lock()
+    turn, ahead = threading.Lock(), deque[Message]()
     ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
     slots = [] if kept is None else kept
     slots += [Slot(limits, job) for _ in range(jobs - len(slots))]
+    messages = map(Message.of, tasks)
     stop, warm = threading.Event(), threading.Event()
 
-    def following() -> Task | None:
+    def following() -> Message | None:
         with turn:
-            return next(waiting, None)
+            return ahead.popleft() if ahead else next(messages, None)
+
+    def meanwhile() -> None:
+        with turn:
+            if len(ahead) < len(slots) and (message := next(messages, None)):
+                ahead.append(message)
 
     def work(slot: Slot, leads: bool) -> None:
         try:
             if not leads:
                 warm.wait()
-            while not stop.is_set() and (task := following()) is not None:
-                ended.put((task, slot.run(task)))
+            while not stop.is_set() and (message := following()) is not None:
+                ended.put((message.task, slot.run(message, meanwhile)))
                 warm.set()
         except BaseException as error:  # told where the results are waited for
             ended.put(error)

@@ -159,7 +159,7 @@ def faults(found: Plan) -> Iterator[tuple[Case, TrsimError]]:
     good = True
     for case in found.cases:
         if case.case not in memories:
-            memories[case.case] = Memory(case.data)
+            memories[case.case] = Memory.of(case.data)
         if not valid(case.data, memories[case.case]) or case is found.cases[0]:
             try:
                 found.scenario(case)

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import tempfile
 import threading
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
@@ -17,6 +18,7 @@ from trsim.sweeps.worker import JOB, MEMORY
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 TAIL = 400  # characters of what a dead process said
+Task = dict[str, Any]
 
 
 class Limits(NamedTuple):
@@ -25,6 +27,17 @@ class Limits(NamedTuple):
     time: float = 0.0  # s of wall time from the first results on; 0: any
     memory: int = 0  # bytes, beside those of a process at rest; 0: any
     retries: int = 2  # after a process died
+
+
+class Message(NamedTuple):
+    """A task, and the line that tells a process of it."""
+
+    task: Task
+    line: bytes
+
+    @classmethod
+    def of(cls, task: Task) -> "Message":
+        return cls(task, json.dumps(task).encode() + b"\n")
 
 
 ANY = Limits()
@@ -40,27 +53,28 @@ class Slot:
         self.dead = False
         self.thread = ThreadPoolExecutor(1)  # for who calls `run` from many
 
-    def run(self, task: dict[str, Any]) -> dict[str, Any]:
-        """How a case ended, with the number of attempts."""
+    def run(self, message: Message, meanwhile: Callable[[], None] | None = None) -> dict[str, Any]:
+        """How a case ended, with the number of attempts; meanwhile: called as one is at work."""
         attempts = 0
         while True:
             attempts += 1
-            ended = self.attempt(task)
+            ended = self.attempt(message.line, meanwhile or (lambda: None))
             chance = ended["status"] == "crashed" and not ended.get("final")
             if not chance or self.dead or attempts > self.limits.retries:
                 return {**ended, "attempts": attempts}
 
-    def attempt(self, task: dict[str, Any]) -> dict[str, Any]:
+    def attempt(self, line: bytes, meanwhile: Callable[[], None]) -> dict[str, Any]:
         """One attempt in a process that is there, or a fresh one."""
         process = self.started()
         assert process.stdin and process.stdout  # noqa: S101
         late = threading.Event()
         watch: threading.Timer | None = None
         try:
-            process.stdin.write(json.dumps(task).encode() + b"\n")
+            process.stdin.write(line)
             process.stdin.flush()
-            for line in process.stdout:
-                told = json.loads(line)
+            meanwhile()
+            for answer in process.stdout:
+                told = json.loads(answer)
                 if "begun" not in told:
                     return told
                 if self.limits.time and watch is None:

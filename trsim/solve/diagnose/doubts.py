@@ -79,10 +79,11 @@ OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
 
 def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, ...]:
     """Sentences "section.name: what; what to do"."""
+    at_start = replace(mechanism, model=scene(mechanism.model))  # one workspace for all of it
     return (
         *unread(scenario),
-        *of_start(scenario, mechanism, outcome.start),
-        *of_overlaps(mechanism, outcome.start),
+        *of_start(scenario, at_start, outcome.start),
+        *of_overlaps(at_start, outcome.start),
         *of_contacts(scenario, mechanism, outcome.peaks),
         *of_elements(scenario, mechanism, outcome.peaks),
         *of_meshes(scenario, mechanism, outcome.bent),
@@ -122,7 +123,7 @@ def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]
     """Positions and velocities that had to give way to joints and drives."""
     initial, static = scenario.initial, mechanism.stages.switches.static
     rests = METHODS[scenario.solver.method].rests or (any(static) and static[0])
-    work = scene(mechanism.model)
+    work = workspace(mechanism.model)
     mechanism = replace(mechanism, model=work)  # one workspace for all of it
     p = projected(mechanism, as_joined(mechanism, begun) if rests else begun)
     asked = initial.settles or initial.values  # then it is moved on purpose

@@ -9,10 +9,10 @@ from math import sqrt
 
 import numpy as np
 
-from trsim.assemble.equations import derivative, gaps
+from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import ContactNumbers
-from trsim.elements.scene import scene
+from trsim.elements.scene import scene, workspace
 from trsim.solve.start.consistent import Start
 from trsim.solve.start.velocities import gap_gradient
 
@@ -23,6 +23,12 @@ FAST = 0.1  # m/s or rad/s
 def of_overlaps(mechanism: Mechanism, begun: Start) -> Iterator[str]:
     """Each of them."""
     if not len(mechanism.model.contact):
+        return
+    look = workspace(mechanism.model)
+    look.branch[:], look.mem[:] = begun.branch, begun.mem
+    poses(look, begun.y)
+    gaps(look, 0.0)
+    if not np.any(look.gap[mechanism.model.contact, 0] > 0.0):
         return
     w = scene(mechanism.model)
     w.branch[:], w.mem[:] = begun.branch, begun.mem
