@@ -1,6 +1,7 @@
 """`trsim check` in this process: how it ends, and the time and memory it took."""
 
 import contextlib
+import gc
 import io
 import json
 import signal
@@ -34,6 +35,26 @@ def watchdog() -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.signal(signal.SIGPROF, before)
+
+
+@contextlib.contextmanager
+def collections() -> Iterator[list[float]]:
+    """CPU times, s, whose sum is what collections of the whole heap took: ends, and starts below 0.
+
+    The heap of a process of tests holds what all its tests and their dice keep, up to 1.7 million
+    objects: one collection took 4.7 s. That of `trsim check` alone holds what it made itself.
+    """
+    times: list[float] = []
+
+    def seen(phase: str, info: dict[str, int]) -> None:
+        if info["generation"] == 2:
+            times.append(-time.process_time() if phase == "start" else time.process_time())
+
+    gc.callbacks.append(seen)
+    try:
+        yield times
+    finally:
+        gc.callbacks.remove(seen)
 
 
 def written(path: Path, data: bytes) -> Path:
@@ -72,9 +93,10 @@ class Checks:
         out, err = io.StringIO(), io.StringIO()
         forget()
         before, start = held("VmRSS"), time.process_time()
-        with watchdog(), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        streams = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
+        with watchdog(), collections() as others, streams[0], streams[1]:
             code = command.callback(scenarios=(str(path),), sets=(), as_json=True, quiet=True)
-        self.slowest = max(self.slowest, time.process_time() - start)
+        self.slowest = max(self.slowest, time.process_time() - start - sum(others))
         self.largest = max(self.largest, held("VmHWM") - before)
         self.counts[code] += 1
         errors = json.loads(out.getvalue())["errors"]
