@@ -2,12 +2,12 @@
 
     python -m benchmarks.against FOLDER [--pairs 31] [CASE ...]
 
-FOLDER holds another tree with its own .venv.  One process of each tree assembles the case once;
-then both integrate in turn, each first in every other pair.  Where a process happens to lie in
-memory changes its speed by some per cent: every TOGETHER pairs two new ones go on.  A pair's ratio
-is of the CPU times of both; the median over the pairs is given with the bounds of its 95 %
-interval, which are order statistics of the ratios (binomial), so that nothing is assumed of how
-they are distributed.
+FOLDER holds another tree, or is a revision of git.  One process of each tree assembles the case
+once; then both integrate in turn, each first in every other pair.  Where a process happens to lie
+in memory changes its speed by some per cent: after some pairs two new ones go on (trees/turns.py).
+A pair's ratio is of the CPU times of both; the median over the pairs is given with the bounds of
+its 95 % interval, which are order statistics of the ratios (binomial), so that nothing is assumed
+of how they are distributed.
 
 Where steps happen to lie changes their number by some per cent, next to singular places and in
 chaotic motion by more.  So a case is DRAWS runs, with tolerances from the one named to SPREAD times
@@ -16,19 +16,15 @@ geometric mean of their ratios is taken pair by pair.
 """
 
 import argparse
-import json
-import subprocess
-from collections.abc import Iterator
-from contextlib import contextmanager
-from math import comb
 from pathlib import Path
 from statistics import geometric_mean, median
-from typing import Any
 
-ROOT = Path(__file__).parent.parent
-VALIDATION, REVERSER = ROOT / "scenarios/validation", ROOT / "scenarios/thrust_reverser"
-TOGETHER = 2  # pairs of one process of each tree
-LEAST = 0.03  # s of CPU of one measurement: shorter runs are repeated
+from benchmarks.measure import SCENARIOS
+from benchmarks.tables import head, row
+from benchmarks.trees import HERE, Tree, there
+from benchmarks.trees.turns import Task, measured, told
+
+VALIDATION, REVERSER = SCENARIOS / "validation", SCENARIOS / "thrust_reverser"
 DRAWS, SPREAD, CHANCE = 8, 1.3, 1e-5
 
 
@@ -57,126 +53,52 @@ def cases() -> dict[str, tuple[str, list[str]]]:
     return found
 
 
-WORKER = r"""
-import json, sys
-from pathlib import Path
-try:
+def drawn(source: str, sets: list[str]) -> list[list[str]]:
+    """What is set in each run of a case."""
     from trsim.scenario.load import load, loads
-except ModuleNotFoundError:  # as it was called in trees before November 2026
-    from trsim.spec.load import load, loads
-from trsim.assemble.assemble import assemble
-from trsim.analyse.trajectory import marched
-source, sets, draws, spread, chance = json.loads(sys.stdin.readline())
-read = (lambda s: loads(source, s)) if "\n" in source else (lambda s: load(Path(source), s))
-given = read(sets)
-end, tolerance, ready = given.solver.end, given.solver.tolerance, []
-for k in range(draws):
-    other = [f"solver.tolerance={tolerance * spread ** (k / (draws - 1))!r}"]
-    for name, joint in given.joints.items():
-        if getattr(joint, "clearance", None):
-            other.append(f"joints.{name}.clearance={joint.clearance * (1 + chance * k)!r}")
-    scenario = read([*sets, *other, f"output.every={end!r}", "output.channels=[]"])
-    ready.append((scenario, assemble(scenario)))
-for line in sys.stdin:
-    total, counts = 0.0, dict.fromkeys(("steps", "rejected_steps", "evaluations"), 0)
-    for _ in range(int(line)):
-        for scenario, mechanism in ready:
-            numbers = marched(scenario, mechanism)[1].statistics
-            total += numbers["integration_cpu"] / draws
-            for k in counts:
-                counts[k] += numbers[k] / draws / int(line)
-    print(json.dumps([total, counts]), flush=True)
-"""
+
+    given = loads(source, sets) if "\n" in source else load(Path(source), sets)
+    end, tolerance, found = given.solver.end, given.solver.tolerance, []
+    for k in range(DRAWS):
+        other = [f"solver.tolerance={tolerance * SPREAD ** (k / (DRAWS - 1))!r}"]
+        for name, joint in given.joints.items():
+            if clearance := getattr(joint, "clearance", None):
+                other.append(f"joints.{name}.clearance={clearance * (1 + CHANCE * k)!r}")
+        found.append([*sets, *other, f"output.every={end!r}", "output.channels=[]"])
+    return found
 
 
-@contextmanager
-def worker(tree: Path, source: str, sets: list[str]) -> Iterator[Any]:
-    """A call that integrates a number of times in another process: CPU s, the run's counts."""
-    process = subprocess.Popen(  # noqa: S603
-        [str(tree / ".venv/bin/python"), "-c", WORKER],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=tree,
-    )  # fmt: skip
-    ask, answer = process.stdin, process.stdout
-    assert ask is not None and answer is not None
-    ask.write(json.dumps([source, sets, DRAWS, SPREAD, CHANCE]) + "\n")
-
-    def run(times: int) -> tuple[float, dict[str, float]]:
-        ask.write(f"{times}\n")
-        ask.flush()
-        cpu, numbers = json.loads(answer.readline())
-        return cpu, numbers
-
-    try:
-        yield run
-    finally:
-        ask.close()
-        process.wait()
-
-
-def interval(ratios: list[float]) -> tuple[float, float]:
-    """Bounds of the median at 95 %: the k-th smallest and largest.
-
-    k is the largest with P(Binomial(n, 1/2) < k) <= 2.5 %.
-    """
-    n, k, below = len(ratios), 0, 0.0
-    while below + comb(n, k) / 2**n <= 0.025:
-        below += comb(n, k) / 2**n
-        k += 1
-    ordered = sorted(ratios)
-    return ordered[max(k - 1, 0)], ordered[min(n - k, n - 1)]
-
-
-def measured(there: Any, here: Any, times: int, swap: bool) -> tuple[Any, Any]:
-    """CPU and counts of a pair, the first of both in turn."""
-    if swap:
-        two = here(times)
-        return there(times), two
-    one = there(times)
-    return one, here(times)
-
-
-def compared(folder: Path, name: str, source: str, sets: list[str], pairs: int) -> list[float]:
+def compared(tree: Tree, name: str, source: str, sets: list[str], pairs: int) -> list[float]:
     """The ratios of all pairs of one case, whose row of the table is printed."""
-    first: list[float] = []
-    second: list[float] = []
-    while len(first) < pairs:
-        with worker(folder, source, sets) as there, worker(ROOT, source, sets) as here:
-            there(1), here(1)
-            times = max(1, round(LEAST / DRAWS / min(there(1)[0], here(1)[0])))
-            for pair in range(len(first), min(len(first) + TOGETHER, pairs)):
-                (one, before), (two, after) = measured(there, here, times, pair % 2 == 0)
-                first.append(one / times)
-                second.append(two / times)
-    took = f"{1e3 * median(first):.2f} | {1e3 * median(second):.2f}"
-    counts = " | ".join(f"{before[k]:.0f}, {after[k]:.0f}" for k in after)
+    task: Task = ("integrated", {"source": source, "runs": drawn(source, sets)})
+    found = measured((tree, HERE), [[task], [task]], pairs)
+    first, second = ([cpu for cpu, _ in of_tree[0]] for of_tree in found)
+    (_, before), (_, after) = (of_tree[0][-1] for of_tree in found)
+    counts = [f"{before[k]:.0f}, {after[k]:.0f}" for k in after]
     ratios = [two / one for one, two in zip(first, second, strict=True)]
-    print(f"| {name} | {took} | {told(ratios)} | {counts} |", flush=True)
+    times = (f"{1e3 * median(of_tree) / DRAWS:.2f}" for of_tree in (first, second))
+    row(name, *times, *told(ratios), *counts)
     return ratios
-
-
-def told(ratios: list[float]) -> str:
-    """Their median and its interval, as two columns."""
-    low, high = interval(ratios)
-    return f"{median(ratios):.3f} | {low:.3f}..{high:.3f}"
 
 
 def main() -> None:
     read = argparse.ArgumentParser(prog="python -m benchmarks.against", description=__doc__)
-    read.add_argument("folder", type=Path)
+    read.add_argument("folder", help="another tree, or a revision of git")
     read.add_argument("case", nargs="*", help="those whose names begin with it; all unless given")
     read.add_argument("--pairs", type=int, default=31)
     a = read.parse_intermixed_args()
-    print("| case | ms there | ms here | ratio | 95 % | steps | rejected | evaluations |")
-    print("|---|---|---|---|---|---|---|---|")
+    tree = there(a.folder)
+    head("case", "ms there", "ms here", "ratio", "95 %", "steps", "rejected", "evaluations")
     problems: dict[str, list[list[float]]] = {}
     for name, (source, sets) in cases().items():
         if not a.case or any(name.startswith(one) for one in a.case):
-            ratios = compared(a.folder, name, source, sets, a.pairs)
+            ratios = compared(tree, name, source, sets, a.pairs)
             problems.setdefault(name.split()[0], []).append(ratios)
-    print("\n| problem | settings | ratio | 95 % |\n|---|---|---|---|")
+    print()
+    head("problem", "settings", "ratio", "95 %")
     for name, settings in problems.items():
         together = [geometric_mean(of_pair) for of_pair in zip(*settings, strict=True)]
-        print(f"| {name} | {len(settings)} | {told(together)} |")
+        row(name, len(settings), *told(together))
 
 
 if __name__ == "__main__":

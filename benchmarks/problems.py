@@ -233,6 +233,28 @@ def _ahead(start: tuple, direction: tuple, part: float) -> list[float]:
     return [a + part * LENGTH * b for a, b in zip(start, direction, strict=True)]
 
 
+# --- stiff where it does not move ---------------------------------------------------------------
+
+# weights on arms that spin, with dampers whose decay takes 1e-4 s
+GOVERNOR = """\
+title: A governor on dampers
+bodies:
+  hub: {mass: 1, inertia: 0.1, at: [0, 0]}
+  left: {mass: 1, inertia: 0.01, at: [0.1, 0]}
+  right: {mass: 1, inertia: 0.01, at: [-0.1, 0]}
+joints:
+  pin: {type: revolute, bodies: [ground, hub], at: [0, 0]}
+  left_arm: {type: prismatic, bodies: [hub, left], axis: [1, 0, 0], at: [0.1, 0]}
+  right_arm: {type: prismatic, bodies: [hub, right], axis: [-1, 0, 0], at: [-0.1, 0]}
+drives:
+  motor: {joint: pin, velocity: "10 + 5*sin(2*t)"}
+forces:
+  left_spring: {type: joint_spring, joint: left_arm, elastic: "2000*stretch", damper: "1e4*rate"}
+  right_spring: {type: joint_spring, joint: right_arm, elastic: "2000*stretch", damper: "1e4*rate"}
+solver: {end: 5 s, tolerance: 1e-6}
+"""
+
+
 def main() -> None:
     (VALIDATION / "windows_2.yaml").write_text(windows(2))
     (VALIDATION / "chain_10.yaml").write_text(chain(10))

@@ -13,18 +13,26 @@ DATA = ROOT / "tests" / "data"
 TOLERANCES = tuple(10.0**-k for k in range(2, 11))
 FRICTION = {"frictionless": 0.0, "friction": 0.01}
 BOUNDS = (3e-4, 1e-5, 1e-7)
+FIRST_STEPS = (0.6e-6, 0.8e-6, 1e-6, 1.25e-6, 1.7e-6)  # s, of the program by hand
+CHANNEL, SPEED = "slider.velocity", 30.0  # m/s, what errors are divided by
+END, ROWS = "solver.end=3 ms", ("output.every=4e-6", f'output.channels=["{CHANNEL}"]')
 
 
-def by_hand(reference: np.ndarray, coefficient: float) -> list[Point]:
+def reference(variant: str) -> np.ndarray:
+    """Times, s, and velocity of the slider, m/s, by a separate program."""
+    return np.genfromtxt(DATA / f"p1_{variant}.csv", delimiter=",", names=True, skip_header=3)
+
+
+def by_hand(known: np.ndarray, coefficient: float) -> list[Point]:
     """The hand-written program's points, medians over first steps."""
     from benchmarks.minimal import run
 
     none, found = np.zeros(0), []
     for tolerance in TOLERANCES:
         errors, cpu, steps = [], [], 0
-        for first in (0.6e-6, 0.8e-6, 1e-6, 1.25e-6, 1.7e-6):
-            r = run(tolerance, coefficient, reference["t"], first)
-            errors.append(np.max(np.abs(r.velocity - reference["slider_v"])) / 30.0)
+        for first in FIRST_STEPS:
+            r = run(tolerance, coefficient, known["t"], first)
+            errors.append(np.max(np.abs(r.velocity - known["slider_v"])) / SPEED)
             cpu += [run(tolerance, coefficient, none, first).cpu for _ in range(5)]
             steps = r.steps
         found.append(Point(tolerance, median(errors), max(errors), median(cpu), steps,
@@ -37,21 +45,18 @@ def main() -> None:
 
     both = []
     for variant, coefficient in FRICTION.items():
-        reference = np.genfromtxt(
-            DATA / f"p1_{variant}.csv", delimiter=",", names=True, skip_header=3
-        )
+        known = reference(variant)
 
-        def error(r: Run, known: np.ndarray = reference) -> float:
-            velocity = np.interp(known["t"], r.rows[:, 0], r.channel("slider.velocity"))
-            return float(np.max(np.abs(velocity - known["slider_v"]))) / 30.0
+        def error(r: Run, right: np.ndarray = known) -> float:
+            velocity = np.interp(right["t"], r.rows[:, 0], r.channel(CHANNEL))
+            return float(np.max(np.abs(velocity - right["slider_v"]))) / SPEED
 
         print(f"  {variant}")
         path = VALIDATION / f"slider_crank_{variant}.yaml"
-        rows = ("output.every=4e-6", 'output.channels=["slider.velocity"]')
-        found = table(Problem(of_file(path, "solver.end=3 ms"), error, rows), "-")
+        found = table(Problem(of_file(path, END), error, ROWS), "-")
         both.append(found)
         at_bounds(found, BOUNDS, "")
-        hand = by_hand(reference, coefficient)
+        hand = by_hand(known, coefficient)
         print("  by hand, two degrees of freedom (benchmarks/minimal.py)")
         for p in hand:
             print(f"  {p.tolerance:9.0e}   {p.error:11.1e}   {p.worst:7.1e} {1e3 * p.cpu:8.3f} "

@@ -30,9 +30,9 @@ class Took(NamedTuple):
     integration: float  # CPU, of a run
 
 
-def took(command: list[str], code: int = 0, cache: str = "") -> Took:
-    """One process, with its own cache folder if one is given; `code` is the exit expected."""
-    environment = {**os.environ, **({"XDG_CACHE_HOME": cache} if cache else {})}
+def took(command: list[str], code: int = 0, **variables: str) -> Took:
+    """One process, with variables of its environment; `code` is the exit expected."""
+    environment = {**os.environ, **variables}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)  # modules stay translated, as for any user
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True)  # noqa: S603
@@ -68,6 +68,6 @@ def main() -> None:
         told("trsim --help", median(trsim("--help")), "0.1")
         told("a schema error", median(trsim("check", str(wrong)), 3), "0.4")
         told("trsim check, reverser", median(trsim("check", str(REVERSER))), "0.8")
-        warm, cold = median(run), took(run, cache=f"{folder}/cache")
+        warm, cold = median(run), took(run, XDG_CACHE_HOME=f"{folder}/cache")
         told("trsim run, reverser, 1 s", warm, "1.0")
         told("the same, compiling (empty cache)", cold._replace(integration=warm.integration), "15")

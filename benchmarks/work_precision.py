@@ -75,10 +75,7 @@ def points(
     run(lean, of_lean)  # what is compiled or loaded once
     for tolerance in tolerances:
         errors, others, cpu, counts = [], [], [], []
-        begun = run(varied(full, tolerance), of_full).outcome
-        own = own_first_step(begun, tolerance, end)
-        for factor in starts:
-            h = None if factor is None else min(factor * own, end)
+        for h in first_steps(full, of_full, tolerance, starts):
             r = run(varied(full, tolerance, h), of_full)
             errors.append(problem.error(r))
             others.append(problem.other(r) if problem.other else 0.0)
@@ -89,6 +86,15 @@ def points(
         steps, evaluations = (int(median(column)) for column in zip(*counts, strict=True))
         yield Point(tolerance, median(errors), max(errors), median(cpu), steps, evaluations,
                     median(others))  # fmt: skip
+
+
+def first_steps(
+    scenario: Any, mechanism: Any, tolerance: float, factors: Sequence[float | None] = FIRST_STEPS
+) -> list[float | None]:
+    """Of runs that differ by nothing else, s; None is the solver's own."""
+    begun, end = run(varied(scenario, tolerance), mechanism).outcome, scenario.solver.end
+    own = own_first_step(begun, tolerance, end)
+    return [None if factor is None else min(factor * own, end) for factor in factors]
 
 
 def varied(scenario: Any, tolerance: float, first: float | None = None) -> Any:

@@ -11,10 +11,8 @@ is stale.  COMMIT is the one it was measured at, where that is known.  None of t
 
 import ast
 import hashlib
-import io
 import re
 import subprocess
-import tarfile
 import tempfile
 from collections.abc import Iterator
 from functools import cache
@@ -22,6 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from benchmarks.docs.made import MADE
+from benchmarks.trees import unpack
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -134,15 +133,16 @@ def lines_of(text: str) -> str:
 
 def digest_at(of: tuple[str, ...], commit: str) -> str:
     """The same of the tree of a commit."""
-    git = ["git", "-C", str(ROOT)]
-    listed = printed([*git, "ls-tree", "-r", "--name-only", commit]).decode().splitlines()
+    listed = (
+        printed(["git", "-C", str(ROOT), "ls-tree", "-r", "--name-only", commit])
+        .decode()
+        .splitlines()
+    )
     there = [name for name in of if any(f"{one}/".startswith(f"{name}/") for one in listed)]
     if not there:
         return digest(())
-    packed = printed([*git, "archive", commit, "--", *there])
     with tempfile.TemporaryDirectory() as folder:
-        with tarfile.open(fileobj=io.BytesIO(packed)) as tar:
-            tar.extractall(folder, filter="data")
+        unpack(commit, Path(folder), *there)
         return digest(of, Path(folder))
 
 

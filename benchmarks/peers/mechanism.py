@@ -6,9 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from benchmarks.measure import ROOT
-
-DATA = ROOT / "tests" / "data"
+from benchmarks.slider_crank import DATA, reference
 
 
 class Link(NamedTuple):
@@ -59,7 +57,7 @@ def tip_error(tip: np.ndarray, n: int, kind: str = "straight") -> float:
 
 def slider_reference() -> tuple[np.ndarray, np.ndarray]:
     """P1 without friction to 3 ms: times, s, and velocity of the slider, m/s."""
-    table = np.genfromtxt(DATA / "p1_frictionless.csv", delimiter=",", names=True, skip_header=3)
+    table = reference("frictionless")
     return table["t"], table["slider_v"]
 
 
