@@ -42,6 +42,7 @@ from benchmarks.tables import head, power, row
 from benchmarks.trees import BEFORE, HERE, Refused, Tree, there
 from benchmarks.trees.turns import Task, measured, ratio, turns, worker
 from benchmarks.work_precision import cheapest, first_steps
+from trsim.system import processors
 
 REVERSER = SCENARIOS / "thrust_reverser"
 QUIET = ("output.every=20 s", "output.channels=[]")  # runs that write no rows
@@ -229,7 +230,7 @@ def trees_of(asked: str) -> list[Tree]:
     except LookupError as error:
         print(f"{error.args[0]}: only this tree is measured.\n")
         return [HERE]
-    print(f"The state before is {before.name}.\n")
+    print(f"The state before is {before.name}.  Processors: {processors()}.\n")
     return [before, HERE]
 
 

@@ -74,13 +74,17 @@ MADE: dict[str, Made] = {
     "against": Made(
         "python -m benchmarks.against FOLDER", (*SOLVER, "benchmarks/against.py"), asked=TIMES
     ),
+    "beside": bench(
+        "beside", "benchmarks/trees", "benchmarks/thousands.py", "benchmarks/slider_crank.py",
+        "benchmarks/minimal.py", "benchmarks/problems.py", "trsim/sweeps", *REVERSER, way="tables",
+    ),
     "chain": bench("chain", way="tables"),
     "chains": bench("chains", way="tables"),
     "contacts": bench("contacts", way="tables"),
     "windows": bench("windows", way="tables"),
     "flexible_pendulum": bench("flexible_pendulum", way="tables"),
     "sweeps": bench("sweeps", "trsim/sweeps", way="tables"),
-    "thousands": bench("thousands", "trsim/sweeps", way="tables"),
+    "thousands": bench("thousands", "benchmarks/trees", "trsim/sweeps", way="tables"),
     "dask": bench("dask", "trsim/sweeps", way="tables"),
     "startup": bench("startup", "trsim/kernels", "trsim/cli", way="tables"),
     "certify": bench("certify", "trsim/analyse", *REVERSER, way="tables"),

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tarfile
+from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -78,8 +79,8 @@ def there(asked: str) -> Tree:
         made.parent.mkdir(parents=True, exist_ok=True)
         with TemporaryDirectory(dir=made.parent) as part:  # what is broken off is no tree
             unpack(name, Path(part) / name)
-            if (venv := ROOT / ".venv").exists():
-                (Path(part) / name / ".venv").symlink_to(venv.resolve())
+            with suppress(OSError):  # Windows has no links for everybody
+                (Path(part) / name / ".venv").symlink_to((ROOT / ".venv").resolve())
             (Path(part) / name).rename(made)
     return Tree(made, name, str(made / ".cache"))
 

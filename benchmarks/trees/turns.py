@@ -10,7 +10,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from math import comb
 from pathlib import Path
 from statistics import median
-from tempfile import TemporaryFile
+from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
 from benchmarks.trees import Refused, Tree
@@ -101,15 +101,17 @@ class Command:
         self.said = ""
         self.done = False
         self._process: subprocess.Popen | None = None
-        self._out = TemporaryFile()  # noqa: SIM115, until close()
+        self._folder = TemporaryDirectory()
+        self._out = Path(self._folder.name) / "out.txt"
 
     def turn(self, seconds: float | None) -> None:
         """Go on for so long, or to the end."""
         before, began = children(), time.perf_counter()
         if self._process is None:
-            self._process = subprocess.Popen(  # noqa: S603
-                self.words, stdout=self._out, start_new_session=True, env=self.tree.environment
-            )
+            with self._out.open("wb") as out:
+                self._process = subprocess.Popen(  # noqa: S603
+                    self.words, stdout=out, start_new_session=True, env=self.tree.environment
+                )
         else:
             os.killpg(self._process.pid, signal.SIGCONT)
         try:
@@ -120,10 +122,13 @@ class Command:
             return
         self.wall += time.perf_counter() - began
         self.cpu, self.done = children() - before, True
-        self._out.seek(0)
-        self.said = self._out.read().decode()
+        self.said = self.printed()
         if code:
             raise Refused(self.tree, f"exit code {code} of {' '.join(self.words)}")
+
+    def printed(self) -> str:
+        """What it has printed so far."""
+        return self._out.read_text(encoding="utf-8")
 
     def close(self) -> None:
         """End it where it is."""
@@ -131,7 +136,7 @@ class Command:
             with suppress(ProcessLookupError):
                 os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()
-        self._out.close()
+        self._folder.cleanup()
 
 
 def commands(each: Sequence[tuple[Tree, Sequence[str]]]) -> list[Command]:
