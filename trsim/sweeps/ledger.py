@@ -22,7 +22,8 @@ AGAIN = ("crashed", "over time", "over memory", "no file")  # chance or limits: 
 REFUSED = "refused"  # no scenario, or no mechanism: there is no result file
 FAILED = (*AGAIN, REFUSED, *ILL)
 LARGEST = 2**62  # of a number in a line
-WORD = str | int | float | None  # of the summary in a line
+NUMBER = (int, float)
+WORD = (str, int, float, type(None))  # of the summary in a line
 
 
 class Entry(NamedTuple):
@@ -103,17 +104,18 @@ def entry_of(line: bytes) -> Entry | None:
         told = json.loads(line)
     except (ValueError, RecursionError):
         return None
-    if not isinstance(told, dict) or {*told, "kept"} != {*Entry._fields}:
+    if not isinstance(told, dict) or told.keys() | {"kept"} != KINDS.keys():
         return None
     told.setdefault("kept", "")
-    if not all(isinstance(told[name], kind) for name, kind in KINDS.items()):
-        return None
-    if any(isinstance(value, bool) for value in told.values()):
-        return None
-    numbers = [value for value in told.values() if isinstance(value, int | float)]
-    words = told["summary"].values()
-    if not all(abs(n) < LARGEST for n in numbers) or not all(isinstance(w, WORD) for w in words):
-        return None
+    for name, kind in KINDS.items():  # of thousands of lines
+        value = told[name]
+        if not isinstance(value, kind) or isinstance(value, bool):
+            return None
+        if isinstance(value, NUMBER) and not abs(value) < LARGEST:
+            return None
+    for word in told["summary"].values():
+        if not isinstance(word, WORD):
+            return None
     return Entry(**told)
 
 

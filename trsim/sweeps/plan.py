@@ -323,4 +323,4 @@ def _distinct(found: list[Case]) -> Iterator[Case]:
 
 def named_file(folder: Path, name: str) -> Path:
     """The result file of a case."""
-    return folder / "cases" / f"{name}.h5"
+    return Path(folder, "cases", f"{name}.h5")

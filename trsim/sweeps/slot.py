@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 from trsim import child
-from trsim.sweeps.worker import JOB, MEMORY
+from trsim.sweeps.worker import JOB, MEMORY, TIMED
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 TAIL = 400  # characters of what a dead process said
@@ -77,7 +77,7 @@ class Slot:
                 told = json.loads(answer)
                 if "begun" not in told:
                     return told
-                if self.limits.time and watch is None:
+                if watch is None:
                     watch = threading.Timer(self.limits.time, _end, (process, late))
                     watch.daemon = True
                     watch.start()
@@ -107,7 +107,10 @@ class Slot:
         """The process, made unless it is there."""
         if self.process is None or self.process.poll() is not None:
             self.let_go()
-            command = child.command("trsim.sweeps.worker", str(self.limits.memory), self.job)
+            timed = [TIMED] if self.limits.time else []
+            command = child.command(
+                "trsim.sweeps.worker", str(self.limits.memory), self.job, *timed
+            )
             environment = {**os.environ, **dict.fromkeys(ONE_THREAD, "1")}
             self.said = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
             self.process = subprocess.Popen(  # noqa: S603

@@ -1,8 +1,8 @@
 """A process that runs cases, one after the other; begun by slot.py.
 
-Tasks come as lines of JSON on standard input; for each it answers {"begun": true} once results
-arrive, and then how the case ended.  It ends with the process that began it, and takes no signal
-of a terminal: that process knows what to do.
+Tasks come as lines of JSON on standard input; for each it answers how the case ended, and before
+that {"begun": true} once results arrive, where cases are timed.  It ends with the process that
+began it, and takes no signal of a terminal: that process knows what to do.
 """
 
 import gc
@@ -17,11 +17,12 @@ from typing import Any
 from trsim.system import end_with_parent, keep_memory, limit_memory
 
 JOB = "trsim.sweeps.job:run"
+TIMED = "timed"
 MEMORY = "the memory allowed for a case may have been used up"
 
 
-def main(memory: int, job: str) -> None:
-    """Work until there are no more tasks."""
+def main(memory: int, job: str, timed: bool) -> None:
+    """Work until there are no more tasks.  timed: somebody waits for the first results."""
     end_with_parent()
     keep_memory()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -40,10 +41,14 @@ def main(memory: int, job: str) -> None:
         replies.write(json.dumps(told) + "\n")
         replies.flush()
 
+    def begun() -> None:
+        if timed:
+            reply({"begun": True})
+
     for line in sys.stdin:
         task = json.loads(line)
         try:
-            ended = run(task, lambda: reply({"begun": True}))
+            ended = run(task, begun)
         except MemoryError:
             reply({"status": "over memory", "reason": "the memory allowed for a case was used up"})
             os._exit(0)  # whatever was at work may be half done
@@ -55,4 +60,4 @@ def main(memory: int, job: str) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), sys.argv[2])
+    main(int(sys.argv[1]), sys.argv[2], sys.argv[3:] == [TIMED])
