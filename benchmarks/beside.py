@@ -99,9 +99,11 @@ def four_pins(trees: Trees, rounds: int) -> Iterator[Line]:
                [f"{median(one):.3f} s" for one in took], took)  # fmt: skip
 
 
-def over_radau(what: str, source: str, tolerances: Sequence[str], *of: Any) -> Iterator[Line]:
-    """`auto` and Radau at some tolerances.  of: trees, rounds."""
-    trees, rounds = of
+def over_radau(
+    what: tuple[str, str], source: str, tolerances: Sequence[str], trees: Trees, rounds: int
+) -> Iterator[Line]:
+    """`auto` and Radau at some tolerances.  what: with how many times Radau is asked for."""
+    name, asked = what
     tasks = [integrated(source, [[*QUIET, f"solver.tolerance={one}", f"solver.method={method}"]])
              for one in tolerances for method in ("auto", "radau")]  # fmt: skip
     found = seconds(measured(trees, [tasks] * len(trees), rounds))
@@ -109,7 +111,7 @@ def over_radau(what: str, source: str, tolerances: Sequence[str], *of: Any) -> I
         autos = [tree[2 * k] for tree in found]
         radaus = [tree[2 * k + 1] for tree in found]
         cells = [beside(*pair) for pair in zip(autos, radaus, strict=True)]
-        yield Line(f"{what}, {tolerance}: `auto`, over Radau", "", cells, autos)
+        yield Line(f"{name}, {tolerance}: `auto`, over Radau", asked, cells, autos)
 
 
 def beside(ours: list[float], theirs: list[float], runs: int = 1) -> str:
@@ -195,7 +197,7 @@ def spatial(trees: Trees, rounds: int) -> Iterator[Line]:
         turns(calls, 1)
         found = turns(calls, rounds)
     cells = [f"{median(one):.2f} s" for one in found]
-    yield Line("the reverser in space, whole command", "2 s", cells, found)
+    yield Line("the reverser in space, whole command", "1 s", cells, found)
 
 
 def integrated(source: str, runs: list[list[str]]) -> Task:
@@ -215,9 +217,11 @@ def measurements(rounds: int, part: int) -> dict[str, Callable[[Trees], Iterator
         "crank": lambda trees: swept(thousands.CRANK, "60 s", trees, part),
         "four pins": lambda trees: four_pins(trees, rounds),
         "governor": lambda trees: over_radau(
-            "governor on dampers", GOVERNOR, DECAYS, trees, rounds
+            ("governor on dampers", "1.5"), GOVERNOR, DECAYS, trees, rounds
         ),
-        "spin-up": lambda trees: over_radau("spin-up of a bar", spin_up, ["1e-4"], trees, rounds),
+        "spin-up": lambda trees: over_radau(
+            ("spin-up of a bar", "2"), spin_up, ["1e-4"], trees, rounds
+        ),
         "P1": lambda trees: slider_cranks(trees, rounds),
         "spatial": lambda trees: spatial(trees, rounds),
     }
