@@ -24,6 +24,22 @@ joints:
   j: {type: revolute, bodies: [ground, b], at: hook}
 """
 
+NAMED_OUTSIDE = """
+parameters: {x: 100 mm}
+templates:
+  arm:
+    parameters: {L: 0.2}
+    points: {tip: {body: bar, at: [L, 0]}}
+    bodies: {bar: {mass: 1, inertia: 0.01, at: [L/2, 0]}}
+    joints: {pin: {type: revolute, bodies: [ground, bar], at: [0, 0]}}
+instances:
+  left: {template: arm, frame: {at: [x, 0]}}
+bodies:
+  weight: {mass: 0.5, inertia: 1e-3, at: left_tip}
+joints:
+  hang: {type: revolute, bodies: [left_bar, weight], at: left_tip}
+"""
+
 
 def told(scenario):
     """All that a scenario says, and the frames its entries were drawn in."""
@@ -85,10 +101,38 @@ def test_instances_of_templates_after_others():
     assert found == {3.0, 4.0}
 
 
+@pytest.mark.parametrize(
+    "path", [("parameters", "x"), ("templates", "arm", "parameters", "L")], ids=str
+)
+def test_a_point_of_an_instance_that_is_named_outside_of_it(path):
+    data = loads(NAMED_OUTSIDE).resolved
+    for value in (0.1, 0.3, 0.1):
+        own = case(data, path, value)
+        assert told(of_case(own)) == told(loads(json.dumps(own)))
+
+
+@pytest.mark.parametrize("between", ["\n", "\t", "\r", "\u00a0", " ", "-2*", ".5*"], ids=repr)
+def test_a_parameter_behind_any_letter(between):
+    data = case(loads(FRAMED).resolved, ("bodies", "b", "mass"), f"9+{between}k")
+    for k in (3, 4, 3):
+        own = case(data, ("parameters", "k"), k)
+        assert told(of_case(own)) == told(loads(json.dumps(own)))
+
+
+@pytest.mark.parametrize(
+    "path", [("parameters", "x"), ("instances", "left", "frame", "at", 1)], ids=str
+)
+def test_zeros_have_signs(path):
+    data = case(loads(NAMED_OUTSIDE).resolved, ("bodies", "weight", "at"), ["x", 1.0, 0])
+    for value in (0.0, -0.0, 0.0):
+        own = case(data, path, value)
+        assert repr(told(of_case(own))) == repr(told(loads(json.dumps(own))))
+
+
 def test_what_is_known_does_not_grow_for_ever(monkeypatch):
     monkeypatch.setattr(memory, "MOST", 20)
     data = loads(FRAMED).resolved
     for k in range(60):
         of_case(case(data, ("bodies", "b", "mass"), 1.0 + k))
-    kept = memory.Memory.lasting(data)
+    kept = memory.Memory.lasting()
     assert len(kept.made) <= 22 and not kept.pieces

@@ -40,7 +40,7 @@ def loads(
 def of_case(data: dict) -> Scenario:
     """The scenario of data that are complete and were read before, one of many much alike in this
     process: what is wrong with it has no place in a file."""
-    return of_tree(Tree(data), "", Memory.lasting(data))
+    return of_tree(Tree(data), "", Memory.lasting())
 
 
 def valid(data: dict, memory: Memory) -> bool:

@@ -2,36 +2,29 @@
 
 import json
 import re
-from functools import lru_cache
+from collections.abc import Iterator
+from functools import cache, lru_cache
 from typing import Any
 
-from trsim.scenario.merge import mapping, merged
+from trsim.scenario.merge import merged
 from trsim.scenario.unfolded import Scope
 
 MOST = 1000  # specs that are known at once from case to case: those just before are much alike
+WORD = re.compile("[A-Za-z_][A-Za-z0-9_]*")  # that may name a parameter or a point
 
 
 class Memory:
-    """Specs that were made already; see scenario/load.py.
+    """Specs that were made already; see scenario/load.py."""
 
-    names: of all parameters and points of the scenarios, see `named`.
-    """
-
-    def __init__(self, names: frozenset[str]) -> None:
+    def __init__(self) -> None:
         self.made: dict[tuple, Any] = {}
-        self.pieces: dict[int, tuple[Any, str, list[str]]] = {}  # the data is kept: its id is too
+        self.pieces: dict[int, tuple[Any, str]] = {}  # the data is kept: its id is too
         self.joined: dict[tuple[int, int], tuple[Any, Any, Any]] = {}
-        self.word = re.compile("|".join(rf"\b{name}\b" for name in sorted(names)) or r"(?!)")
 
     @classmethod
-    def of(cls, data: dict[str, Any]) -> "Memory":
-        """One for scenarios with the names of this data."""
-        return cls(named(data))
-
-    @classmethod
-    def lasting(cls, data: dict[str, Any]) -> "Memory":
+    def lasting(cls) -> "Memory":
         """One that knows what cases before this one had, of which their data are gone."""
-        memory = _lasting(named(data))
+        memory = _lasting()
         memory.pieces.clear()
         memory.joined.clear()
         if len(memory.made) > MOST:
@@ -47,17 +40,23 @@ class Memory:
         points: dict[str, Any],
     ) -> tuple:
         """What a piece of data depends on: its text, the values of the parameters and the points
-        that the text names, and what the text means where it stands."""
+        that any word of it may name, and what the text means where it stands.
+
+        Equal keys make specs that are equal to the bit: numbers count with their sign, as of zero,
+        and with their unit, as 1 m/rad is none per turn.
+        """
         if id(data) not in self.pieces:
-            text = json.dumps(data)
-            self.pieces[id(data)] = data, text, sorted(set(self.word.findall(text)))
-        _, text, names = self.pieces[id(data)]
-        means = (scope.frame, *scope.names.items()) if scope else ()
-        meant = scope.names if scope else {}
-        named = [points.get(meant.get(name, name)) for name in names]
-        values = [parameters.get(name) for name in names]
-        units = [getattr(one, "unit", None) for one in values]  # 1 m/rad is none per turn
-        return section, text, means, *values, *units, *named
+            self.pieces[id(data)] = data, json.dumps(data)
+        text = self.pieces[id(data)][1]
+        names, found = scope.names if scope else {}, list[Any]()
+        for word in words(text):
+            if word in parameters:
+                value = parameters[word]
+                found += word, repr(value), getattr(value, "unit", None)
+            if (point := points.get(names.get(word, word))) is not None:
+                found += word, point, repr(point.frame)
+        means = (repr(scope.frame), *scope.names.items()) if scope else ()
+        return section, text, means, *found
 
     def merged(self, base: Any, over: Any) -> Any:
         """One piece of data overridden by another; the same piece for the same two."""
@@ -67,12 +66,23 @@ class Memory:
         return self.joined[key][2]
 
 
-def named(data: dict[str, Any]) -> frozenset[str]:
-    """The names of the parameters and points of a scenario, and of its templates."""
-    of = [data, *mapping(data, "templates").values()]
-    return frozenset(
-        name for one in of for key in ("parameters", "points") for name in mapping(one, key)
-    )
+@lru_cache(MOST)
+def words(text: str) -> tuple[str, ...]:
+    """All that may be a name in the strings of some JSON."""
+    return tuple(sorted({word for one in strings(json.loads(text)) for word in WORD.findall(one)}))
 
 
-_lasting = lru_cache(8)(Memory)
+def strings(data: Any) -> Iterator[str]:
+    """Every string in a tree, keys among them."""
+    if isinstance(data, str):
+        yield data
+    elif isinstance(data, dict | list):
+        for one in data:
+            yield from strings(one)
+        if isinstance(data, dict):
+            yield from strings(list(data.values()))
+
+
+@cache
+def _lasting() -> Memory:
+    return Memory()

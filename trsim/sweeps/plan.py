@@ -155,12 +155,9 @@ def plan(
 
 def faults(found: Plan) -> Iterator[tuple[Case, TrsimError]]:
     """The cases that are no scenarios, with what is wrong."""
-    memories: dict[str, Memory] = {}
-    good = True
+    memory, good = Memory(), True
     for case in found.cases:
-        if case.case not in memories:
-            memories[case.case] = Memory.of(case.data)
-        if not valid(case.data, memories[case.case]) or case is found.cases[0]:
+        if not valid(case.data, memory) or case is found.cases[0]:
             try:
                 found.scenario(case)
             except TrsimError as error:
