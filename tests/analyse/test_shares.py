@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+import yaml
 
+import trsim
 from tests import small
 from trsim.analyse.shares import intervals, maxima, shares, single
 from trsim.analyse.window import Window, window
@@ -83,3 +85,26 @@ def test_impacts_of_a_run(run):
 def test_a_joint_without_contact_is_refused(run):
     with pytest.raises(UsageError, match="no contact 'A'"):
         shares(run, "A", window(run))
+
+
+SEALED = """
+planar: false
+bodies:
+  door: {mass: 20, inertia: [2, 2, 4], at: [0.4, 0, 1], velocity: [0, -0.4, 0]}
+joints:
+  rail: {type: prismatic, bodies: [ground, door], at: [0.4, 0, 1], axis: [0, 1, 0]}
+forces:
+  edge: {type: seal, line: {body: door, start: [0.8, 0, 0.1], end: [0.8, 0, 1.9]},
+         against: {body: ground, at: [0, -0.01, 0], normal: [0, 1, 0]},
+         height: 0.004, load: 1300, at: 0.004, exponent: 1.2}
+solver: {end: 0.2, tolerance: 1e-6}
+output: {every: 1 ms}
+"""
+
+
+def test_a_seal_is_as_deep_as_its_compression():
+    run = trsim.run(yaml.safe_load(SEALED))
+    times = run.events["time"]
+    onset, separation = (float(t) for t in times[:2])
+    assert run.number("contact:edge") == pytest.approx((separation - onset) / 0.2)
+    assert run.number("impacts:edge") == 1.0

@@ -19,6 +19,7 @@ from trsim.analyse.window import Window
 from trsim.arrays import Array
 from trsim.store.read import Run
 
+DEPTHS = ("penetration", "compression")  # what a contact calls how deep it is; that of a seal
 RIPPLE = 0.01  # of the deepest penetration of a contact: less is no maximum of its own
 
 
@@ -50,7 +51,8 @@ def shares(run: Run, joint: str, within: Window) -> Shares:
     struck = times[kind == "onset"]
     times, closes = changed(times, kind, run.time[: len(steps["time"]) > 0])
     begins, ends = intervals(times, closes, within)
-    once = single(steps["time"], steps["penetration"], begins, ends)
+    depth = next(steps[name] for name in DEPTHS if name in steps)
+    once = single(steps["time"], depth, begins, ends)
     length = within.end - within.begin
     clipped = np.minimum(ends, within.end) - np.maximum(begins, within.begin)
     struck = struck[within.of(struck)]

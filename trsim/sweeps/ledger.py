@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from trsim import system
 from trsim.errors import FileError
-from trsim.statuses import ILL
+from trsim.statuses import ILL, STATUSES
 
 DIGEST = "case_sha256"  # attribute of /provenance in a result file
 AGAIN = ("crashed", "over time", "over memory", "no file")  # chance or limits: tried again
@@ -81,13 +81,13 @@ def _ends_a_line(path: Path) -> bool:
 
 
 def entries(folder: Path) -> dict[str, Entry]:
-    """The last entry of every case, of all shards."""
+    """The last entry of every case: of one process its last line, of several shards the latest."""
     found: dict[str, Entry] = {}
     for path in filter(Path.is_file, sorted(folder.glob("ledger*.jsonl"))):
-        for line in _lines(path):
-            entry = entry_of(line)
-            if entry and (entry.case not in found or entry.at >= found[entry.case].at):
-                found[entry.case] = entry
+        own = {entry.case: entry for entry in map(entry_of, _lines(path)) if entry}
+        for name, entry in own.items():  # a clock may have been set back since a line before
+            if name not in found or entry.at >= found[name].at:
+                found[name] = entry
     return found
 
 
@@ -116,7 +116,20 @@ def entry_of(line: bytes) -> Entry | None:
     for word in told["summary"].values():
         if not isinstance(word, WORD):
             return None
+    if told["status"] not in STATUSES and told["status"] not in FAILED:
+        return None
+    if b"\\ud" in line and not _is_text(told):
+        return None
     return Entry(**told)
+
+
+def _is_text(told: dict[str, Any]) -> bool:
+    """Whether all of it can be written: half of a pair of surrogates cannot."""
+    try:
+        json.dumps(told, ensure_ascii=False).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def stamp(file: Path) -> tuple[int, int]:

@@ -1,0 +1,52 @@
+"""What became of cases, line by line: which line counts, and which are none."""
+
+import json
+
+import pytest
+
+from trsim.sweeps.ledger import Entry, entries, entry_of
+
+ENDED = Entry("a", "d", "e", "done", "", 1, "c", 10, 20, 3.0, 0.5, {"time": 1.0})
+
+
+def written(path, *made):
+    path.write_text("".join(json.dumps(one._asdict()) + "\n" for one in made))
+
+
+def test_of_one_process_the_last_line_counts_whatever_its_clock_said(tmp_path):
+    ahead = ENDED._replace(status="crashed", at=ENDED.at + 86_400.0)
+    written(tmp_path / "ledger.jsonl", ahead, ENDED)
+    assert entries(tmp_path) == {"a": ENDED}
+
+
+def test_of_several_shards_the_latest_counts(tmp_path):
+    later = ENDED._replace(status="crashed", at=ENDED.at + 1.0)
+    written(tmp_path / "ledger-1of2.jsonl", later)
+    written(tmp_path / "ledger-2of2.jsonl", ENDED)
+    assert entries(tmp_path) == {"a": later}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"reason": "\ud800"},
+        {"case": "\udfff"},
+        {"summary": {"\udc00": 1.0}},
+        {"status": ""},
+        {"status": "x"},
+        {"status": "Done"},
+        {"attempts": True},
+        {"at": 1e300},
+        {"summary": {"time": []}},
+    ],
+    ids=str,
+)
+def test_what_is_no_line(change):
+    line = json.dumps(ENDED._asdict() | change).encode()
+    assert entry_of(json.dumps(ENDED._asdict()).encode()) == ENDED
+    assert entry_of(line) is None
+
+
+def test_letters_of_any_script():
+    told = ENDED._replace(reason="\u00e4 \u6469 \U0001f527")
+    assert entry_of(json.dumps(told._asdict()).encode()) == told
