@@ -99,7 +99,7 @@ def test_gear_pair():
     r = go("gear_pair")
     late = r.t > 1.0
     lost = np.rad2deg((2 * np.deg2rad(10) * 0.02 - 0.5e-3) / 0.06)
-    assert told("gear_pair", f"{lost:.3f}")
+    assert told("gear_pair", f"{lost:.2f}")
     # at the end of each push the pinion slows down faster than the brake: the wheel coasts on
     w, rate = 2 * np.pi, 0.5 / 2e-3
     left = np.arctan(w / rate)

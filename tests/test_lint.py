@@ -105,6 +105,8 @@ CASES = [
     (("mass: 1, inertia: 0.01", "mass: 1e-8, inertia: 1e-10"), "bodies.crank: 1e-08", "1.2e-02"),
     (("solver: {end: 1 s}", "solver: {end: 1 s}\noutput: {every: 0.3}"), "output.every", "0.9 s"),
     (("solver: {end: 1 s}", "solver: {end: 12 ms}\noutput: {every: 1}"), "output.every", "at 0 s"),
+    # 60 / (2 pi)
+    (("solver: {", "initial: {A: 60}\nsolver: {"), "initial.A: 60 rad are 9.55", "`60 deg`"),
     # from the implicit relation: see damping_factor
     (("restitution: 0.9", "restitution: 0.5"), "contact_laws.pin: lankarani", "0.725"),
     (("v0: 1e-4, v1: 1e-3", "v0: 0, v1: 1e-6"), "contact_laws.pin.friction", "1.0e-06"),

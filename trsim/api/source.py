@@ -99,12 +99,14 @@ def is_result(source: str | os.PathLike) -> bool:
 
 def same(given: Given, summary: dict[str, Any]) -> bool | None:
     """Whether a new result holds what the one it was made from holds; None if there is none."""
-    from trsim.store.read import read
+    from trsim.store.read import read, verify
 
     if not isinstance(given, str | os.PathLike):
         return None
     try:
-        before = read(given).attributes.get("content_sha256") if is_result(given) else None
+        if not is_result(given) or not verify(given):  # damaged, it is not what it says it is
+            return None
+        before = read(given).attributes.get("content_sha256")
     except TrsimError:
         return None
     return summary.get("content_sha256") == before if before else None

@@ -43,7 +43,7 @@ def lines(data: dict[str, Any]) -> list[str]:
         what = "largest difference of a summary quantity"
         out.append(f"{what} {data['quantity_difference']:.1e} of the range ({data['quantity']})")
     for contact in data["contacts"]:
-        text = f"{contact['contact']}: {contact['impacts']} impacts, twin {contact['twin']}"
+        text = f"{contact['contact']}: {contact['impacts']} touches, twin {contact['twin']}"
         early = f"; {contact['before']} and {contact['twin_before']} before they part"
         out.append(text + (early if data["windows"] else ""))
     return out

@@ -186,7 +186,7 @@ def start_lines(start: dict[str, Any]) -> list[str]:
         f"  start       positions open by {p['position_before']:.1e} as drawn{of['position_row']}, "
         f"{p['position_after']:.1e} at the start; moved most: {words(moved)}",
         f"              {velocities}",
-        f"              {start['force_residual']:.1e} N out of balance, "
+        f"              equations of motion off by {start['force_residual']:.1e} N, "
         f"in touch: {words(start['closed_contacts'])}",
     ]
 

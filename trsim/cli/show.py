@@ -124,7 +124,7 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
     for name, contact in data["summary"]["contacts"].items():
         unit = run.contact_unit(name, "contact_force", "normal_force")
         out.append(
-            f"  contact   {name}: {contact['impacts']} impacts, peak {contact['peak_force']:.5g} "
+            f"  contact   {name}: {contact['impacts']} touches, peak {contact['peak_force']:.5g} "
             f"{unit} at {contact['peak_time']:.5g} s"
         )
     out += user_events(run, data["fired"])

@@ -115,7 +115,7 @@ def told(shown: Shown) -> dict[str, str]:
         found["joints open by at most"] = f"{solver['position_residual']:.1e} (m or rad)"
     contacts = run.summary["contacts"]
     if contacts:
-        found["impacts"] = ", ".join(f"{n}: {c['impacts']}" for n, c in contacts.items())
+        found["touches"] = ", ".join(f"{n}: {c['impacts']}" for n, c in contacts.items())
     if run.fired:
         found["events"] = ", ".join(f"{n}: {times}" for n, times in run.fired.items())
     if "content_sha256" in a:

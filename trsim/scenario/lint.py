@@ -27,6 +27,7 @@ CONFORMAL, LOOSE = 1e-3, 0.2  # clearance over radius
 OFF = 0.1  # restitution delivered against restitution written
 STEPS = 20.0  # of rk4 in the time of one contact
 STABLE = 2.785  # rk4: step times the rate of a decay
+TURNS = 3.0  # at the start: more than anybody winds a joint up by
 NARROW = 1e-5  # m/s over which friction turns round
 
 
@@ -37,7 +38,7 @@ def lint(scenario: Any) -> tuple[str, ...]:
         *(_inertias, partial(_sizes, points), partial(plausible.densities, points)),
         *(plausible.moduli, plausible.coefficients),
         *(_conformity, _restitutions, _speeds, _stops, _fixed_step, _ignored_step, _ground, _rows),
-        *(slender, strangers, _unused),
+        *(_many_turns, slender, strangers, _unused),
     )
     found = (message for check in checks for message in check(scenario))
     return tuple(dict.fromkeys(_as_written(scenario, message) for message in found))
@@ -284,6 +285,23 @@ def _ground(scenario: Any) -> Iterator[str]:
             "joints: nothing is joined to `ground`, so the mechanism drifts as a whole; name "
             "`ground` as one of the `bodies` of a joint if that is not meant"
         )
+
+
+def _many_turns(scenario: Any) -> Iterator[str]:
+    """Angles at the start that read like degrees."""
+    for name, value in scenario.initial.values.items():
+        if abs(value) > TURNS * 2.0 * pi and _is_angle(scenario, name):
+            yield (
+                f"initial.{name}: {value:.6g} rad are {value / (2.0 * pi):.3g} turns; a number "
+                f"without a unit is in rad: write `{value:.6g} deg` if degrees are meant"
+            )
+
+
+def _is_angle(scenario: Any, name: str) -> bool:
+    """Whether a coordinate of a joint, as `initial` names it, is an angle."""
+    from trsim.elements.coordinates import of_joint, split
+
+    return of_joint(split(name, scenario.joints)[0], scenario.joints).get(name) == "angle"
 
 
 def _rows(scenario: Any) -> Iterator[str]:

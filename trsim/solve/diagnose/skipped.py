@@ -81,6 +81,8 @@ def _stabilisation(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
 def _start(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
     if not any(scenario.gravity):
         yield "weight: `gravity` is not given"
+    if scenario.solver.end is None:
+        yield "a run: `solver.end` is not given, and `trsim run` asks for it"
     if not scenario.initial.settles:
         yield "static equilibrium: `initial` asks for none, the start is as drawn"
 
