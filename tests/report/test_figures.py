@@ -9,7 +9,8 @@ from matplotlib.image import imread
 
 from tests import small
 from trsim.errors import FileError
-from trsim.report import report
+from trsim.report import analysed, report
+from trsim.report.asked import Asked
 from trsim.report.display import compared, differences, display_units, short
 from trsim.report.figures import contact_force, contact_history, motion
 from trsim.report.looks import Looks
@@ -153,6 +154,48 @@ def test_differences_are_named():
         "speed 0.5 m/s; clearance at A 0.1 mm",
         "speed 1 m/s; clearance at A 0",
     ]
+
+
+@pytest.mark.parametrize(
+    "more, told",
+    [
+        ({"initial": {"pivot": "20deg"}}, "initial pivot 20deg; m 1kg"),
+        ({"initial": {"pivot": {"rate": 2}}}, "initial rate at pivot 2; m 1kg"),
+        ({"loads": {"gust": "limit"}, "planar": True}, "loads gust limit; planar True; m 1kg"),
+        ({"output": {"every": "1 ms"}}, "output every 1 ms; m 1kg"),
+        ({"solver": {"end": "8 s"}, "title": "x", "report": {"units": {}}}, "end 8 s; m 1kg"),
+        ({"frame": {"at": [1, 0]}, "drives": {"d": {"position": "t" * 50}}}, ""),
+        ({"phases": [{"until": "1 s", "lock": ["a", "b"], "drive": {"c": "t"}}]}, ""),
+        ({"events": {"e": {"when": "a > 1", "do": {"release": "b"}, "once": True}}}, ""),
+        ({"bodies": {"rod": {"type": "bar"}}}, "type at rod bar; m 1kg"),
+    ],
+)  # fmt: skip
+def test_all_that_differs_is_named_or_nothing(more, told):
+    """Nothing: it would take too many words, and files are named instead."""
+    labels = differences([more | {"parameters": {"m": "1kg"}}, {"parameters": {"m": "2kg"}}])
+    assert labels[0] == told
+
+
+def test_a_law_is_named_unless_it_comes_with_the_clearance():
+    law = [{"clearance": 1, "contact": "a"}, {"clearance": 2, "contact": "b"}]
+    assert (
+        differences([{"joints": {"B": one}} for one in law])[0]
+        == "clearance at B 1; contact at B a"
+    )
+    law = [{"clearance": 1, "contact": "a"}, {"clearance": 2, "contact": "a"}, {}]
+    assert differences([{"joints": {"B": one}} for one in law])[0] == "clearance at B 1"
+
+
+def test_runs_are_told_by_files_where_words_are_too_few(tmp_path):
+    """Also where one label would do without a word; numbers.csv names the file always."""
+    paths = [tmp_path / "a.h5", tmp_path / "b.h5"]
+    many = ("initial.O=0", "joints.B.clearance=0.1mm", "output.every=1ms", "solver.tolerance=1e-7")
+    for path, sets in zip(paths, ((), many), strict=True):
+        small.run(path, *small.FEW, *sets)
+    assert [shown.label for shown in compared([read(path) for path in paths])] == [*map(str, paths)]
+    analysed(paths, tmp_path, Asked(table=("final:stroke",)))
+    with (tmp_path / "numbers.csv").open(newline="") as file:
+        assert [row["file"] for row in csv.DictReader(file)] == [*map(str, paths)]
 
 
 def test_thinned_curve_keeps_extremes_and_ends():
