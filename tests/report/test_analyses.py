@@ -306,6 +306,9 @@ def test_samples_have_a_panel_for_each_key(study):
 
 
 def test_bifurcation(study, tmp_path):
+    """A table over another key is one of trsim, too, and is replaced."""
+    older = b"case,another [mm],period,x,y\r\n"
+    (tmp_path / "bifurcation_journal_y.csv").write_bytes(older)
     found = studies.draw(study, Asked(bifurcation=("journal:y",)), [], tmp_path)
     assert named(found) == {"bifurcation_journal_y.png", "bifurcation_journal_y.csv"}
     assert 0.002 < drawn(tmp_path / "bifurcation_journal_y.png") < 0.5

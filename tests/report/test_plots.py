@@ -12,9 +12,10 @@ from trsim.errors import FileError, UsageError
 from trsim.report import analysed, plots
 from trsim.report.asked import Asked, file_name, table
 from trsim.report.display import compared
+from trsim.report.looks import Looks
 from trsim.report.style import look
 from trsim.store.read import read
-from trsim.store.target import together
+from trsim.store.target import headed, together
 
 DOOR = """\
 title: Door that swings
@@ -187,6 +188,39 @@ def test_all_or_nothing_is_written(asked, door, tmp_path):
     with pytest.raises(UsageError, match=f"{last.name} exists and is not a table"):
         analysed([door], tmp_path, asked)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_table_in_other_units_is_replaced(door, tmp_path):
+    asked = Asked(plot=("handle.force : door_angle", "door_angle"), table=("final:door_angle",))
+    for units in ((), ("angle: deg",), ("time: ms, torque: kN*m",), ()):
+        first, second = (
+            columns(path)[0]
+            for path in analysed([door], tmp_path, asked, Looks(units)).files
+            if path.name.startswith("plot") and path.suffix == ".csv"
+        )
+    assert (first[0], second[0]) == ("door_angle [rad]", "time [s]")
+
+
+@pytest.mark.parametrize(
+    "start, fits",
+    [
+        (b"a [mm],b [s]\r\n1,2\r\n", True),
+        (b'"a [mm]",b,c\r\n', True),
+        (b"a [mm],c [s]\r\n1,2\r\n", False),
+        (b"a [mm]\r\n", False),
+        (b"a,b\n1,2\n", False),  # as editors write it
+        (b"a [m] of [s],b\r\n", False),
+        (b"\r\n", False),
+        (b"a\0,b\xff\r\n", False),
+    ],
+)
+def test_tables_are_known_by_titles_without_units(start, fits):
+    assert headed("a [m]", "b").fits(start) == fits
+
+
+def test_an_empty_title_stands_for_any():
+    assert headed("", "b").fits(b"x [mm],b\r\n")
+    assert not headed("", "b").fits(b"x [mm]\r\n")
 
 
 def test_two_words_that_make_one_file(tmp_path):

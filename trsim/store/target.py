@@ -4,9 +4,11 @@ A name that is a link stands for the file it leads to.  All but result files of 
 under another name beside the target, which takes its place when it is complete.
 """
 
+import csv
 import errno
 import json
 import os
+import re
 import stat
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -78,9 +80,24 @@ def _is_svg(start: bytes) -> bool:
 
 
 def headed(*titles: str) -> Kind:
-    """Tables that begin with these titles."""
-    line = ",".join(titles).encode()
-    return Kind("table of trsim", lambda start: start.split(b"\r\n")[0].startswith(line))
+    """Tables that begin with these titles, in whatever units; an empty one stands for any."""
+    wanted = [_bare(title) for title in titles]
+
+    def fits(start: bytes) -> bool:
+        line, ended, _ = start.partition(b"\r\n")
+        try:
+            found = next(csv.reader([line.decode()]))
+        except (csv.Error, UnicodeDecodeError, StopIteration):
+            return False
+        pairs = zip(wanted, map(_bare, found), strict=False)
+        return bool(ended) and len(found) >= len(wanted) and all(a in ("", b) for a, b in pairs)
+
+    return Kind("table of trsim", fits)
+
+
+def _bare(title: str) -> str:
+    """A title without its unit."""
+    return re.sub(r" \[[^\[\]]*\]$", "", title)
 
 
 def _is_checkpoint(start: bytes) -> bool:
