@@ -6,12 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from matplotlib.text import Text
 
 from tests import small
 from trsim.errors import FileError
-from trsim.report import analysed, report
+from trsim.report import analysed, report, style
 from trsim.report.asked import Asked
-from trsim.report.display import compared, differences, display_units, short
+from trsim.report.display import compared, differences, display_units, short, written
 from trsim.report.figures import contact_force, contact_history, motion
 from trsim.report.looks import Looks
 from trsim.report.orbits import orbit
@@ -196,6 +197,40 @@ def test_runs_are_told_by_files_where_words_are_too_few(tmp_path):
     analysed(paths, tmp_path, Asked(table=("final:stroke",)))
     with (tmp_path / "numbers.csv").open(newline="") as file:
         assert [row["file"] for row in csv.DictReader(file)] == [*map(str, paths)]
+
+
+def texts(made):
+    """What is drawn, by whether it is set as mathematics."""
+    found = {False: set(), True: set()}
+    for one in made.findobj(Text):
+        text, mathematics = one._preprocess_math(one.get_text())
+        found[bool(mathematics)].add(text)
+    return found
+
+
+def test_titles_and_files_are_shown_as_they_are_written(tmp_path):
+    r"""Dollars, one or more, with `\\` or without; powers of ten at ticks are mathematics."""
+    made, axes = style.panels(1)
+    title, name, third = "$x^2$ and $no end", r"\$a$_b.h5", r"$\wrong{$"
+    axes[0, 0].plot([1.0, 2.0], [1e-8, 1e9], label=name)
+    axes[0, 0].set(yscale="log", ylabel=f"{third} ({written('N/m^1.5')})")
+    made.suptitle(title)
+    made.legend()
+    style.save(made, tmp_path / "a.png")
+    found = texts(made)
+    assert found[False] >= {title, name, f"{third} (N/m¹·⁵)"}
+    assert found[True] and all("mathdefault{10^{" in text for text in found[True])
+
+
+@pytest.mark.parametrize("form", ["png", "pdf", "svg"])
+@pytest.mark.filterwarnings("error")
+def test_letters_that_the_font_has_not(form, tmp_path):
+    """Boxes, without a warning of another program that names its files."""
+    with style.asked(Looks(form=form)), look():
+        made, axes = style.panels(1)
+        axes[0, 0].set_title("振り子")
+        made.suptitle("नमस्ते")
+        assert style.save(made, tmp_path / "振り子").stat().st_size > 1000
 
 
 def test_thinned_curve_keeps_extremes_and_ends():

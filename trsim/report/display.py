@@ -114,7 +114,12 @@ def of_angles(chosen: Mapping[str, tuple[float, str]]) -> dict[str, tuple[float,
 
 def written(text: str) -> str:
     """A unit as it is printed."""
-    return text.replace("^2", "²").replace("*", "\u00b7").replace("^1.5", "$^{1.5}$")
+    return text.replace("^2", "²").replace("*", "\u00b7").replace("^1.5", raised("1.5"))
+
+
+def raised(text: str) -> str:
+    """A number as an exponent, in letters that need no mathematics."""
+    return text.translate(str.maketrans("0123456789.-", "⁰¹²³⁴⁵⁶⁷⁸⁹\u00b7⁻"))
 
 
 def short(value: float, digits: int = 4) -> str:
