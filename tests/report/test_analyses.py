@@ -45,7 +45,7 @@ def test_portrait(several, paths, tmp_path):
     words = ("stroke:B.normal_force", "crank_angle.rate:slider.velocity.x@1ms..")
     found = analysed(given, tmp_path, Asked(portrait=words))
     names = {"portrait_stroke_B_normal_force.png",
-             "portrait_crank_angle_rate_slider_velocity_x_1ms.png"}  # fmt: skip
+             "portrait_crank_angle_rate_slider_velocity_x_1ms_to.png"}  # fmt: skip
     assert named(found) == names
     for word, what in (("stroke", "over what"), ("stroke:strake", "no channel"),
                        ("stroke:slider.velocity", "3 components")):  # fmt: skip
@@ -57,7 +57,7 @@ def test_portrait(several, paths, tmp_path):
 def test_spectrum(several, paths, tmp_path):
     given = paths if several else paths[:1]
     found = analysed(given, tmp_path, Asked(spectrum=("crank_angle.rate@1ms..",)))
-    assert named(found) == {f"spectrum_crank_angle_rate_1ms.{kind}" for kind in ("png", "csv")}
+    assert named(found) == {f"spectrum_crank_angle_rate_1ms_to.{kind}" for kind in ("png", "csv")}
     picture, table = sorted(found.files, key=lambda path: path.suffix, reverse=True)
     assert 0.005 < drawn(picture) < 0.5
     assert len({row["run"] for row in rows(table)}) == len(given)
@@ -306,6 +306,9 @@ def test_samples_have_a_panel_for_each_key(study):
 
 
 def test_bifurcation(study, tmp_path):
+    """A table over another key is one of trsim, too, and is replaced."""
+    older = b"case,another [mm],period,x,y\r\n"
+    (tmp_path / "bifurcation_journal_y.csv").write_bytes(older)
     found = studies.draw(study, Asked(bifurcation=("journal:y",)), [], tmp_path)
     assert named(found) == {"bifurcation_journal_y.png", "bifurcation_journal_y.csv"}
     assert 0.002 < drawn(tmp_path / "bifurcation_journal_y.png") < 0.5
@@ -509,7 +512,7 @@ def test_an_option_that_would_do_nothing_to_a_sweep_is_refused(tmp_path):
 
 
 def test_names():
-    assert file_name("spectrum", "B.force.x@0.1..2") == "spectrum_B_force_x_0_1_2"
+    assert file_name("spectrum", "B.force.x@0.1..2") == "spectrum_B_force_x_0_1_to_2"
     assert in_words("peak:B.contact_force@0.3..") == "peak of B, contact force (0.3..)"
     assert readable("joints.B.clearance") == "B clearance"
 

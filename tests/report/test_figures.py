@@ -6,11 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from matplotlib.text import Text
 
 from tests import small
 from trsim.errors import FileError
-from trsim.report import report
-from trsim.report.display import compared, differences, display_units, short
+from trsim.report import analysed, report, style
+from trsim.report.asked import Asked
+from trsim.report.display import compared, differences, display_units, short, written
 from trsim.report.figures import contact_force, contact_history, motion
 from trsim.report.looks import Looks
 from trsim.report.orbits import orbit
@@ -153,6 +155,82 @@ def test_differences_are_named():
         "speed 0.5 m/s; clearance at A 0.1 mm",
         "speed 1 m/s; clearance at A 0",
     ]
+
+
+@pytest.mark.parametrize(
+    "more, told",
+    [
+        ({"initial": {"pivot": "20deg"}}, "initial pivot 20deg; m 1kg"),
+        ({"initial": {"pivot": {"rate": 2}}}, "initial rate at pivot 2; m 1kg"),
+        ({"loads": {"gust": "limit"}, "planar": True}, "loads gust limit; planar True; m 1kg"),
+        ({"output": {"every": "1 ms"}}, "output every 1 ms; m 1kg"),
+        ({"solver": {"end": "8 s"}, "title": "x", "report": {"units": {}}}, "end 8 s; m 1kg"),
+        ({"frame": {"at": [1, 0]}, "drives": {"d": {"position": "t" * 50}}}, ""),
+        ({"phases": [{"until": "1 s", "lock": ["a", "b"], "drive": {"c": "t"}}]}, ""),
+        ({"events": {"e": {"when": "a > 1", "do": {"release": "b"}, "once": True}}}, ""),
+        ({"bodies": {"rod": {"type": "bar"}}}, "type at rod bar; m 1kg"),
+    ],
+)  # fmt: skip
+def test_all_that_differs_is_named_or_nothing(more, told):
+    """Nothing: it would take too many words, and files are named instead."""
+    labels = differences([more | {"parameters": {"m": "1kg"}}, {"parameters": {"m": "2kg"}}])
+    assert labels[0] == told
+
+
+def test_a_law_is_named_unless_it_comes_with_the_clearance():
+    law = [{"clearance": 1, "contact": "a"}, {"clearance": 2, "contact": "b"}]
+    assert (
+        differences([{"joints": {"B": one}} for one in law])[0]
+        == "clearance at B 1; contact at B a"
+    )
+    law = [{"clearance": 1, "contact": "a"}, {"clearance": 2, "contact": "a"}, {}]
+    assert differences([{"joints": {"B": one}} for one in law])[0] == "clearance at B 1"
+
+
+def test_runs_are_told_by_files_where_words_are_too_few(tmp_path):
+    """Also where one label would do without a word; numbers.csv names the file always."""
+    paths = [tmp_path / "a.h5", tmp_path / "b.h5"]
+    many = ("initial.O=0", "joints.B.clearance=0.1mm", "output.every=1ms", "solver.tolerance=1e-7")
+    for path, sets in zip(paths, ((), many), strict=True):
+        small.run(path, *small.FEW, *sets)
+    assert [shown.label for shown in compared([read(path) for path in paths])] == [*map(str, paths)]
+    analysed(paths, tmp_path, Asked(table=("final:stroke",)))
+    with (tmp_path / "numbers.csv").open(newline="") as file:
+        assert [row["file"] for row in csv.DictReader(file)] == [*map(str, paths)]
+
+
+def texts(made):
+    """What is drawn, by whether it is set as mathematics."""
+    found = {False: set(), True: set()}
+    for one in made.findobj(Text):
+        text, mathematics = one._preprocess_math(one.get_text())
+        found[bool(mathematics)].add(text)
+    return found
+
+
+def test_titles_and_files_are_shown_as_they_are_written(tmp_path):
+    r"""Dollars, one or more, with `\\` or without; powers of ten at ticks are mathematics."""
+    made, axes = style.panels(1)
+    title, name, third = "$x^2$ and $no end", r"\$a$_b.h5", r"$\wrong{$"
+    axes[0, 0].plot([1.0, 2.0], [1e-8, 1e9], label=name)
+    axes[0, 0].set(yscale="log", ylabel=f"{third} ({written('N/m^1.5')})")
+    made.suptitle(title)
+    made.legend()
+    style.save(made, tmp_path / "a.png")
+    found = texts(made)
+    assert found[False] >= {title, name, f"{third} (N/m¹·⁵)"}
+    assert found[True] and all("mathdefault{10^{" in text for text in found[True])
+
+
+@pytest.mark.parametrize("form", ["png", "pdf", "svg"])
+@pytest.mark.filterwarnings("error")
+def test_letters_that_the_font_has_not(form, tmp_path):
+    """Boxes, without a warning of another program that names its files."""
+    with style.asked(Looks(form=form)), look():
+        made, axes = style.panels(1)
+        axes[0, 0].set_title("振り子")
+        made.suptitle("नमस्ते")
+        assert style.save(made, tmp_path / "振り子").stat().st_size > 1000
 
 
 def test_thinned_curve_keeps_extremes_and_ends():

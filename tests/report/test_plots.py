@@ -10,10 +10,12 @@ from tests.report.test_figures import drawn
 from trsim.analyse.plotted import Plotted, limits, plotted
 from trsim.errors import FileError, UsageError
 from trsim.report import analysed, plots
-from trsim.report.asked import Asked
+from trsim.report.asked import Asked, file_name, table
 from trsim.report.display import compared
+from trsim.report.looks import Looks
 from trsim.report.style import look
 from trsim.store.read import read
+from trsim.store.target import headed, together
 
 DOOR = """\
 title: Door that swings
@@ -161,6 +163,75 @@ def test_words_of_the_same_letters_have_files_of_their_own(door, tmp_path):
     assert len({*found.files}) == 4
     assert columns(found.files[1])[0][0] == "door_angle.rate [rad/s]"
     assert columns(found.files[3])[0][0] == "time [s]"
+
+
+def test_names_tell_words_apart():
+    """Magnitudes, signs and ends: what one word makes does not replace what another one made."""
+    words = ("angle", "|angle|", "a@-3..-1", "a@3..1", "a@-3..1", "a@0.1..2", "a@0..1.2",
+             "a@1e-3..", "a@1e3..")  # fmt: skip
+    assert len({file_name("plot", word) for word in words}) == len(words)
+    assert file_name("plot", "|B.force| -3..-1") == "plot_magnitude_B_force_minus3_to_minus1"
+    assert file_name("plot", "a, b : c") == "plot_a_b_c"
+
+
+@pytest.mark.parametrize("asked", [
+    Asked(plot=("door_angle", "door_angle.rate")),
+    Asked(spectrum=("door_angle.rate",), table=("final:door_angle",)),
+])  # fmt: skip
+def test_all_or_nothing_is_written(asked, door, tmp_path):
+    """A table of somebody else: no picture beside it is written or replaced either."""
+    last = analysed([door], tmp_path, asked).files[-1]
+    last.write_text("of somebody else")
+    before = {path: path.read_bytes() for path in tmp_path.iterdir() if path.suffix != ".png"}
+    for path in tmp_path.glob("*.png"):
+        path.unlink()
+    with pytest.raises(UsageError, match=f"{last.name} exists and is not a table"):
+        analysed([door], tmp_path, asked)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_table_in_other_units_is_replaced(door, tmp_path):
+    asked = Asked(plot=("handle.force : door_angle", "door_angle"), table=("final:door_angle",))
+    for units in ((), ("angle: deg",), ("time: ms, torque: kN*m",), ()):
+        first, second = (
+            columns(path)[0]
+            for path in analysed([door], tmp_path, asked, Looks(units)).files
+            if path.name.startswith("plot") and path.suffix == ".csv"
+        )
+    assert (first[0], second[0]) == ("door_angle [rad]", "time [s]")
+
+
+@pytest.mark.parametrize(
+    "start, fits",
+    [
+        (b"a [mm],b [s]\r\n1,2\r\n", True),
+        (b'"a [mm]",b,c\r\n', True),
+        (b"a [mm],c [s]\r\n1,2\r\n", False),
+        (b"a [mm]\r\n", False),
+        (b"a,b\n1,2\n", False),  # as editors write it
+        (b"a [m] of [s],b\r\n", False),
+        (b"\r\n", False),
+        (b"a\0,b\xff\r\n", False),
+    ],
+)
+def test_tables_are_known_by_titles_without_units(start, fits):
+    assert headed("a [m]", "b").fits(start) == fits
+
+
+def test_an_empty_title_stands_for_any():
+    assert headed("", "b").fits(b"x [mm],b\r\n")
+    assert not headed("", "b").fits(b"x [mm]\r\n")
+
+
+def test_two_words_that_make_one_file(tmp_path):
+    with together():
+        for _ in range(2):  # the same again takes its place
+            table(tmp_path / "a.csv", ("x", "y"), [(1.0, 2.0)])
+    with pytest.raises(UsageError, match=r"b\.csv would be written twice"), together():
+        table(tmp_path / "b.csv", ("x", "y"), [])
+        table(tmp_path / "b.csv", ("z", "y"), [])
+    assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
+    assert (tmp_path / "a.csv").read_bytes() == b"x,y\r\n1.0,2.0\r\n"
 
 
 def test_several_runs(paths, tmp_path):

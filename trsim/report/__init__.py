@@ -62,6 +62,7 @@ def analysed(
     """
     from trsim.report import index, style
     from trsim.report.asked import Asked, words
+    from trsim.store.target import together
 
     paths, asked = with_tables(paths, asked)
     check_given(paths)
@@ -69,12 +70,14 @@ def analysed(
     units = chosen(looks.units)
     with style.asked(looks) as sheet, made(folder) as folder:
         if not Path(paths[0]).is_dir():
-            return of_runs(paths, folder, asked, units)
+            with together():
+                return of_runs(paths, folder, asked, units)
         from trsim.report import studies
         from trsim.sweeps.study import study
 
         swept = study(Path(paths[0]))
-        found = studies.draw(swept, asked, words(asked.table), folder, units)
+        with together():
+            found = studies.draw(swept, asked, words(asked.table), folder, units)
         if asked == Asked():
             title = f"{Path(swept.source).stem}: {len(swept.cases)} cases"
             found.files.append(index.of_sweep(folder, title, found, sheet.shots))

@@ -1,6 +1,7 @@
 """What `trsim report` was asked for beside its ordinary figures, and what came of it."""
 
 import csv
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -72,8 +73,14 @@ def nothing() -> Found:
 
 
 def file_name(kind: str, word: str) -> str:
-    """A name for the figure of a word: letters and digits, joined."""
-    return "_".join([kind, *"".join(c if c.isalnum() else " " for c in word).split()])
+    """A name for the figure of a word: letters and digits, joined.
+
+    Signs that make another word of the same letters are written out: |B.force|@-3..-1 is
+    magnitude_B_force_minus3_to_minus1.
+    """
+    said = re.sub(r"\|([^|]*)\|", r" magnitude \1 ", word)
+    said = re.sub(r"-(?=[\d.])", " minus", said).replace("..", " to ")
+    return "_".join([kind, *"".join(c if c.isalnum() else " " for c in said).split()])
 
 
 def table(

@@ -12,6 +12,7 @@ from trsim.report.display import Shown
 from trsim.report.keys import Units, axis, named_value
 from trsim.report.marks import spaced
 from trsim.report.style import colour, draw, missed, panels
+from trsim.store.target import headed
 
 DRAWN = 60_000  # points
 FEW = 200  # points of a case that are drawn large
@@ -29,7 +30,7 @@ def bifurcation(one: Shown, of: Diagram, folder: Path) -> Found:
         for x, y in zip(each.x.tolist(), each.y.tolist(), strict=True)
     ]
     titles = ("case", f"{of.over} [{of.units.get(of.over, '-')}]", "period", "x", "y")
-    found.files.append(table(folder / f"{name}.csv", titles, rows))
+    found.files.append(table(folder / f"{name}.csv", titles, rows, headed("case", "", "period")))
     for each in of.cases:
         what = f"{of.section}: {period_in_words(each.period)}"
         found.lines.append(f"{each.case}: {what}, {len(each.x)} points")

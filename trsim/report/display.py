@@ -10,11 +10,14 @@ from trsim.store.read import Run
 from trsim.units import unit
 
 DEFAULT = {"angle": "deg", "length": "mm"}
-COMPARED = ("parameters", "points", "bodies", "joints", "drives", "forces", "contact_laws",
-            "gravity", "solver")  # fmt: skip
-MINOR = ("contact", "type")  # keys that say nothing where another one differs
+ASIDE = ("title", "report", "limits", "cases", "sweep")  # of a scenario; a run is the same without
+MINOR = ("contact", "type")  # keys that say nothing where another one comes or goes with them
+PLAIN = ("parameters", "points", "solver")  # sections whose entries are known by their names alone
 SHORT = 0.05  # s: a shorter run is told in ms
 MOST = 3  # parameters in a label
+LONGEST = 40  # letters of a value in a label
+
+Entry = tuple[str, ...]  # the way to a value of a scenario
 
 
 class Shown(NamedTuple):
@@ -60,19 +63,24 @@ def compared(runs: list[Run], asked: Mapping[str, tuple[float, str]] | None = No
 
     asked: SI unit -> factor and unit, of an option.
     """
-    scenarios = [run.scenario for run in runs]
-    given = (scenarios[0].get("report") or {}).get("units") or {}
+    given = (runs[0].scenario.get("report") or {}).get("units") or {}
     units = display_units(given)
     units |= of_angles(asked or {})
     if "time" not in given and max(run.summary.get("time", 1.0) for run in runs) < SHORT:
         units["s"] = (1e3, "ms")
     units |= {si: (factor, written(text)) for si, (factor, text) in (asked or {}).items()}
-    labels = differences(scenarios) if len(runs) > 1 else [""]
-    if len(set(labels)) < len(labels):
+    labels = told_apart(runs) if len(runs) > 1 else [""]
+    return [Shown(run, label, units, asked or {}) for run, label in zip(runs, labels, strict=True)]
+
+
+def told_apart(runs: list[Run]) -> list[str]:
+    """A label for each run: all that differs, or its title, or its file."""
+    labels = differences([run.scenario for run in runs])
+    if not all(labels) or len(set(labels)) < len(labels):
         labels = [run.attributes["title"] or run.path.stem for run in runs]
     if len(set(labels)) < len(labels):
         labels = [str(run.path) for run in runs]
-    return [Shown(run, label, units, asked or {}) for run, label in zip(runs, labels, strict=True)]
+    return labels
 
 
 # --- units -----------------------------------------------------------------------------------
@@ -106,7 +114,12 @@ def of_angles(chosen: Mapping[str, tuple[float, str]]) -> dict[str, tuple[float,
 
 def written(text: str) -> str:
     """A unit as it is printed."""
-    return text.replace("^2", "²").replace("*", "\u00b7").replace("^1.5", "$^{1.5}$")
+    return text.replace("^2", "²").replace("*", "\u00b7").replace("^1.5", raised("1.5"))
+
+
+def raised(text: str) -> str:
+    """A number as an exponent, in letters that need no mathematics."""
+    return text.translate(str.maketrans("0123456789.-", "⁰¹²³⁴⁵⁶⁷⁸⁹\u00b7⁻"))
 
 
 def short(value: float, digits: int = 4) -> str:
@@ -119,15 +132,27 @@ def short(value: float, digits: int = 4) -> str:
 
 
 def differences(scenarios: list[dict[str, Any]]) -> list[str]:
-    """One label per scenario: the entries in which they differ, with their values."""
-    flat = [dict(_flat({k: s[k] for k in COMPARED if k in s})) for s in scenarios]
+    """One label per scenario: all entries in which they differ, with their values; empty ones
+    where these are too many or too long for a label."""
+    flat = [dict(_flat({k: v for k, v in s.items() if k not in ASIDE})) for s in scenarios]
     keys = dict.fromkeys(key for one in flat for key in one)
     differing = [key for key in keys if len({repr(one.get(key)) for one in flat}) > 1]
-    major = [key for key in differing if key[-1] not in MINOR] or differing
-    return [_label(one, major) for one in flat]
+    major = [key for key in differing if key[-1] not in MINOR]
+    told = [key for key in differing if key in major or not _implied(key, major, flat)]
+    return [_label(one, told) for one in flat]
 
 
-def _flat(data: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+def _implied(key: Entry, major: list[Entry], flat: list[dict[Entry, Any]]) -> bool:
+    """Whether an entry changes only as another one of its element comes or goes."""
+    return any(
+        len({(other in one, repr(one.get(key))) for one in flat})
+        == len({other in one for one in flat})
+        for other in major
+        if other[:-1] == key[:-1]
+    )
+
+
+def _flat(data: Any, path: Entry = ()) -> Iterator[tuple[Entry, Any]]:
     if isinstance(data, dict):
         for key, value in data.items():
             yield from _flat(value, (*path, key))
@@ -135,13 +160,14 @@ def _flat(data: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ..
         yield path, data
 
 
-def _label(one: dict[tuple[str, ...], Any], keys: list[tuple[str, ...]]) -> str:
+def _label(one: dict[Entry, Any], keys: list[Entry]) -> str:
     """A, B: clearance 0.3 mm; the same value of the same key is told once."""
-    same: dict[tuple[str, Any], list[str]] = {}
+    same: dict[tuple[str, str], list[str]] = {}
     for key in keys:
-        value = one.get(key, 0 if key[-1] == "clearance" else "-")
-        owner = key[-2] if len(key) > 2 else ""
-        same.setdefault((key[-1], str(value)), []).append(owner)
+        value = str(one.get(key, 0 if key[-1] == "clearance" else "-"))
+        if len(value) > LONGEST:
+            return ""
+        same.setdefault((_word(key), value), []).append(".".join(map(str, key[1:-1])))
     parts = []
     for (name, value), owners in same.items():
         who = ", ".join(owner for owner in owners if owner)
@@ -149,3 +175,9 @@ def _label(one: dict[tuple[str, ...], Any], keys: list[tuple[str, ...]]) -> str:
     if len(parts) > MOST:
         return ""
     return "; ".join(parts)
+
+
+def _word(key: Entry) -> str:
+    """What an entry is called: `clearance`, `end`, but `initial pivot`, `output every`."""
+    bare = len(key) == 1 or key[0] in PLAIN or (len(key) > 2 and key[0] != "initial")
+    return str(key[-1]) if bare else f"{key[0]} {key[-1]}"

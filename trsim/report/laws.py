@@ -13,6 +13,7 @@ from trsim.report.marks import spaced
 from trsim.report.spectra import label
 from trsim.report.style import colour, finished, panels
 from trsim.scenario.load import loads
+from trsim.store.target import headed
 
 TITLES = ("law", "what", "of", "gives", "unit of", "unit", "visited from", "visited to", "note")
 LOOK = {"law": "-", "at rest": "--", "impact": "-", "visited": "-"}
@@ -63,7 +64,7 @@ def written(path: Path, law: Law) -> Path:
     rows = [(name, float(x), float(y)) for name, (xs, ys) in groups.items()
             for x, y in zip(xs, ys, strict=True)]  # fmt: skip
     titles = ("part", f"{law.x} [{law.x_unit}]", f"{law.y} [{law.y_unit}]")
-    return table(path, titles, rows)
+    return table(path, titles, rows, headed("part", "", ""))
 
 
 def figure(shown: Shown, law: Law) -> Any:

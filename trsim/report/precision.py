@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trsim.report.asked import table
+from trsim.report.display import raised
 from trsim.scenario.methods import METHODS
 from trsim.store.target import FIGURE, check_writable, headed, replaceable
 
@@ -71,7 +72,7 @@ def curves(axes: Any, study: "Study", field: str, below: str, uncertainty: float
         filled = np.array([not getattr(p, below) for p in there], bool)
         over = METHODS[method].control
         of = "error" if study.reference.apart is None else "peak error"
-        label = f"{method}, {of} ~ {over}$^{{{slope:.2f}}}$" if np.isfinite(slope) else method
+        label = f"{method}, {of} ~ {over}{raised(f'{slope:.2f}')}" if np.isfinite(slope) else method
         label += "" if there else " (nothing to show)"
         axes.plot(x, y, color=colour(k))
         mark, size = MARKS[k % len(MARKS)], 4.5

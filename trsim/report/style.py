@@ -3,6 +3,7 @@
 import io
 import re
 import textwrap
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -152,18 +153,42 @@ def save(figure: Figure, path: Path) -> Path:
     """Write the picture, without anything that changes from day to day; its name."""
     form = _sheets[-1].form
     path = path.with_suffix(f".{form}")
-    if form == "pdf":
-        shot = io.BytesIO()
-        picture(figure, shot)
-        _sheets[-1].shots[path] = shot.getvalue()
-    if form != "png":
-        sharp(figure)
+    as_written(figure)
+    with letters_may_lack():
+        if form == "pdf":
+            shot = io.BytesIO()
+            picture(figure, shot)
+            _sheets[-1].shots[path] = shot.getvalue()
+        if form != "png":
+            sharp(figure)
+        write(figure, path, form)
+    return path
+
+
+def write(figure: Figure, path: Path, form: str) -> None:
     with file_errors(path), fresh(path, FIGURES[form]) as unfinished:
         if form == "png":
             picture(figure, unfinished)
         else:
             figure.savefig(unfinished, format=form, metadata=ABOUT[form])
-    return path
+
+
+def as_written(figure: Figure) -> None:
+    """Dollars in titles and names of files are no mathematics; powers at ticks are."""
+    ticks = figure.findobj(matplotlib.axis.Tick)
+    theirs = {id(text) for tick in ticks for text in (tick.label1, tick.label2)}
+    for text in figure.findobj(matplotlib.text.Text):
+        if id(text) not in theirs:
+            text.set_parse_math(False)
+
+
+@contextmanager
+def letters_may_lack() -> Iterator[None]:
+    """Letters that the font has not are boxes, and whoever looks at them needs no warning."""
+    with warnings.catch_warnings():
+        for text in ("Glyph .* missing", "Matplotlib currently does not support"):
+            warnings.filterwarnings("ignore", text)
+        yield
 
 
 def picture(figure: Figure, target: Any) -> None:

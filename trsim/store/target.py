@@ -4,9 +4,11 @@ A name that is a link stands for the file it leads to.  All but result files of 
 under another name beside the target, which takes its place when it is complete.
 """
 
+import csv
 import errno
 import json
 import os
+import re
 import stat
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -78,9 +80,24 @@ def _is_svg(start: bytes) -> bool:
 
 
 def headed(*titles: str) -> Kind:
-    """Tables that begin with these titles."""
-    line = ",".join(titles).encode()
-    return Kind("table of trsim", lambda start: start.split(b"\r\n")[0].startswith(line))
+    """Tables that begin with these titles, in whatever units; an empty one stands for any."""
+    wanted = [_bare(title) for title in titles]
+
+    def fits(start: bytes) -> bool:
+        line, ended, _ = start.partition(b"\r\n")
+        try:
+            found = next(csv.reader([line.decode()]))
+        except (csv.Error, UnicodeDecodeError, StopIteration):
+            return False
+        pairs = zip(wanted, map(_bare, found), strict=False)
+        return bool(ended) and len(found) >= len(wanted) and all(a in ("", b) for a, b in pairs)
+
+    return Kind("table of trsim", fits)
+
+
+def _bare(title: str) -> str:
+    """A title without its unit."""
+    return re.sub(r" \[[^\[\]]*\]$", "", title)
 
 
 def _is_checkpoint(start: bytes) -> bool:
@@ -106,6 +123,8 @@ FIGURES = {
     "svg": Kind("figure of trsim", _is_svg),
 }
 
+_waiting: list[dict[Path, Path]] = []  # name -> finished file without it, of `together`
+
 
 def replaceable(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> Path:
     """The file to write for a target, links followed.
@@ -123,15 +142,21 @@ def replaceable(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = (
         # the superuser may write anything: what is marked as not to be written is left alone
         if not found.st_mode & 0o222 or not os.access(target, os.W_OK):
             raise FileError(f"{target} is write-protected", ELSEWHERE)
-        with target.open("rb") as file:
-            if kind.at_end:
-                file.seek(max(found.st_size - BEGINNING, 0))
-            start = file.read(BEGINNING)
-    if start and not kind.fits(start):
+        fits = _fits(target, kind)
+    if not fits:
         raise UsageError(f"{target} exists and is not a {kind.name}", ELSEWHERE)
     if any(os.path.exists(one) and os.path.samefile(one, target) for one in given):
         raise UsageError(f"{target} would be replaced by what is made of it", ELSEWHERE)
     return _followed(target)
+
+
+def _fits(path: Path, kind: Kind) -> bool:
+    """Whether a file is of a kind, or empty."""
+    with path.open("rb") as file:
+        if kind.at_end:
+            file.seek(max(os.fstat(file.fileno()).st_size - BEGINNING, 0))
+        part = file.read(BEGINNING)
+    return not part or kind.fits(part)
 
 
 def _followed(target: Path) -> Path:
@@ -155,15 +180,45 @@ def fresh(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> 
     with file_errors(target):
         make(target.parent)
     final = replaceable(target, kind, given)
+    waiting = _waiting[-1] if _waiting else None
+    if waiting and final in waiting and not _fits(waiting[final], kind):
+        raise UsageError(f"{target} would be written twice", "Ask for one thing after the other.")
     with file_errors(target):
         unfinished = _empty(final)
+    kept = False
     try:
         yield unfinished
-        with file_errors(target):
-            os.replace(unfinished, final)
+        if waiting is None:
+            with file_errors(target):
+                os.replace(unfinished, final)
+        else:
+            if final in waiting:
+                waiting[final].unlink()
+            waiting[final], kept = unfinished, True
     finally:
-        with suppress(OSError):
-            unfinished.unlink()
+        if not kept:
+            with suppress(OSError):
+                unfinished.unlink()
+
+
+@contextmanager
+def together() -> Iterator[None]:
+    """What is written inside takes its names at the end: all files or, after an error, none.
+
+    So one that may not be replaced leaves no other one beside older files it does not go with.
+    """
+    waiting: dict[Path, Path] = {}
+    _waiting.append(waiting)
+    try:
+        yield
+        for final, unfinished in waiting.items():
+            with file_errors(final):
+                os.replace(unfinished, final)
+    finally:
+        _waiting.pop()
+        for unfinished in waiting.values():
+            with suppress(OSError):
+                unfinished.unlink()
 
 
 def _empty(final: Path) -> Path:

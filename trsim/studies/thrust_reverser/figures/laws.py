@@ -72,7 +72,7 @@ def stiffnesses(axes: Any) -> None:
             force = [1e-3 * elastic(d, Pair(K, 1.5, c, 0)) for d in depth]
             label = f"{1e3 * c:g} mm" if form == "internal" else None
             axes.plot(1e6 * depth, force, dash, color=colour(k), label=label, lw=1.2)
-    axes.plot([], [], "--", color="0.4", label="$R_i + R_j$")
+    axes.plot([], [], "--", color="0.4", label="Rᵢ + Rⱼ")
     axes.set_ylim(0.0, 6.0)
     axes.set_xlabel("penetration (\u00b5m)")
     axes.set_ylabel("normal force (kN)")
