@@ -119,14 +119,15 @@ def written(
 def told(
     path: Path, every: list[Curves], of: Plotted, apart: list[Apart], tables: tuple[str, ...]
 ) -> Path:  # fmt: skip
-    """The differences: a line for each run, table, channel and branch, in SI units."""
-    over = every[0].shown.run.unit(of.x)
-    lines = []
+    """The differences: a line for each run, table, channel and branch, in the units of the rows."""
+    first, lines = every[0].shown, []
+    wide, over = first.told(first.run.unit(of.x))
     for one in apart:
         shown, off = every[one.run].shown, one.off
-        lines.append((label(shown), one.table, one.channel, shown.run.unit(one.channel), off.how,
-                      off.largest, off.at, over, off.value, off.rms, off.of_range, off.rows,
-                      off.asked))  # fmt: skip
+        factor, unit = shown.told(shown.run.unit(one.channel))
+        lines.append((label(shown), one.table, one.channel, unit, off.how, off.largest * factor,
+                      off.at * wide, over, off.value * factor, off.rms * factor, off.of_range,
+                      off.rows, off.asked))  # fmt: skip
     return table(path, TITLES, lines, given=tables)
 
 
@@ -134,16 +135,18 @@ def note(
     found: Found, every: list[Curves], tables: list[Given], of: Plotted, apart: list[Apart]
 ) -> None:
     """The differences among the numbers and lines of a report, and what speaks against them."""
-    over = every[0].shown.run.unit(of.x)
+    first = every[0].shown
+    wide, over = first.told(first.run.unit(of.x))
     for one in apart:
         shown, off = every[one.run].shown, one.off
-        unit = shown.run.unit(one.channel)
+        factor, unit = shown.told(shown.run.unit(one.channel))
+        largest, at = off.largest * factor, off.at * wide
         text = f"{label(shown)} less {one.table}, {one.channel} over {of.x}, {off.how}: "
-        text += f"largest difference {off.largest:.4g} {unit} at {of.x} = {off.at:.4g} {over}"
-        text += f" ({off.of_range:.2%} of its range), rms {off.rms:.3g} {unit}"
+        text += f"largest difference {largest:.4g} {unit} at {of.x} = {at:.4g} {over}"
+        text += f" ({off.of_range:.2%} of its range), rms {off.rms * factor:.3g} {unit}"
         found.lines.append(f"{text}; compared at {off.rows} of {off.asked} rows")
         what = f"{one.channel} less {one.table}, {off.how}"
-        found.values.append(Value(label(shown), what, off.largest, np.nan, unit))
+        found.values.append(Value(label(shown), what, largest, np.nan, unit))
     for other in tables:
         lost = [channel for channel in of.y if channel not in other.y]
         if lost:

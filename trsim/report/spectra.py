@@ -23,23 +23,24 @@ def draw(runs: list[Shown], word: str, folder: Path) -> Found:
     spectra = [of_channel(s.run, channel, window(s.run, text)) for s in runs]
     name, found = file_name("spectrum", word), nothing()
     found.files.append(style.draw(folder / f"{name}.png", figure, runs, spectra, channel))
+    factor, unit = runs[0].told(runs[0].run.unit(channel))
     rows = [
         (label(s), f, d)
         for s, one in zip(runs, spectra, strict=True)
-        for f, d in zip(one.frequency.tolist(), one.density.tolist(), strict=True)
+        for f, d in zip(one.frequency.tolist(), (one.density * factor).tolist(), strict=True)
     ]
-    unit = runs[0].run.unit(channel)
     titles = ("run", "frequency [Hz]", f"{channel} [{unit}/sqrt(Hz)]")
     found.files.append(table(folder / f"{name}.csv", titles, rows))
     for shown, one in zip(runs, spectra, strict=True):
         found.lines.append(
-            f"{label(shown)}: {channel}: rms {one.rms:.4g} {unit}, resolution "
+            f"{label(shown)}: {channel}: rms {one.rms * factor:.4g} {unit}, resolution "
             f"{one.resolution:.3g} Hz, {one.segments} segments, Hann window"
         )
         for peak in one.peaks:
-            found.lines.append(f"  {peak.frequency:.5g} Hz: amplitude {peak.amplitude:.3g} {unit}")
+            size = peak.amplitude * factor
+            found.lines.append(f"  {peak.frequency:.5g} Hz: amplitude {size:.3g} {unit}")
             what = f"{channel}: amplitude at {peak.frequency:.5g} Hz"
-            found.values.append(Value(label(shown), what, peak.amplitude, np.nan, unit))
+            found.values.append(Value(label(shown), what, size, np.nan, unit))
         found.lines.extend(f"  warning: {warning}" for warning in one.warnings)
     return found
 
