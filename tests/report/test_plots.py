@@ -155,6 +155,24 @@ def test_tables_that_say_too_little(door, tmp_path):
             analysed([door], tmp_path, asked)
 
 
+def test_a_window_that_no_run_reaches(door, tmp_path):
+    """Refused as `@5..6` is, with what there is, before anything is written."""
+    asked = Asked(plot=("door_angle.rate",))
+    over = Asked(plot=("door_angle.rate : door_angle",))
+    (tmp_path / "a.csv").write_text("time [s],door_angle.rate [rad/s]\n0.1,1\n5.5,2\n6,2\n")
+    for one, where in (
+        (asked._replace(window="5..6"), "'5..6'; time goes from 0 to 0.5 s"),
+        (asked._replace(zoom="5..6"), "'5..6'; time goes from 0 to 0.5 s"),
+        (asked._replace(window="5..6", second_axis=True), "'5..6'"),
+        (asked._replace(window="5..6", overlay=(str(tmp_path / "a.csv"),)), "'5..6'"),
+        (over._replace(window="50deg.."), "door_angle goes from .* to 0.6 rad"),
+    ):
+        with pytest.raises(UsageError, match=f"door.h5: no row lies in .*{where}"):
+            analysed([door], tmp_path / "out", one)
+    assert list((tmp_path / "out").iterdir()) == []
+    assert analysed([door], tmp_path / "out", asked._replace(window="0.5..6")).files
+
+
 def test_words_of_the_same_letters_have_files_of_their_own(door, tmp_path):
     both = ("door_angle : door_angle.rate", "door_angle, door_angle.rate")
     found = analysed([door], tmp_path, Asked(plot=both))

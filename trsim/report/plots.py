@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trsim.analyse.plotted import Plotted, limits, plotted, rows
+from trsim.analyse.plotted import Plotted, check_reached, limits, plotted, rows
 from trsim.analyse.reference import Given, given
 from trsim.analyse.turning import differences
 from trsim.analyse.window import between
@@ -47,7 +47,12 @@ def draw(
         of = magnitudes(of, first)
     tables, text = wanted.tables, wanted.window
     within = limits(text, first.unit(of.x) if first.stores(of.x) else "-")
+    zoom = enlarged(wanted.zoom, first, of)
     every = [Curves(shown, rows(shown.run, of)) for shown in runs]
+    for one in every:
+        check_reached(one.shown.run, of.x, one.rows.x, text, within)
+        if zoom:
+            check_reached(one.shown.run, of.x, one.rows.x, wanted.zoom, zoom)
     units = {channel: first.unit(channel) for channel in of.y}
     others = [given(Path(file), of.x, units, first.unit(of.x)) for file in tables]
     apart = list(compared(every, others, of, within))
@@ -55,7 +60,7 @@ def draw(
     while name in {path.stem for path in taken}:  # another word of the same letters
         name += "_too"
     path = folder / f"{name}.png"
-    view = View(wanted.second_axis, enlarged(wanted.zoom, first, of))
+    view = View(wanted.second_axis, zoom)
     found.files.append(style.draw(path, figure, every, others, of, within, apart, view))
     for k, one in enumerate(every):
         own = folder / f"{name}{f'_{k + 1}' if k else ''}.csv"
