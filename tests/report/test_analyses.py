@@ -335,7 +335,7 @@ def test_bifurcation(study, tmp_path):
     with look():
         upper, lower = bifurcated(studies.shown(study), diagram(study, "journal:y")).axes
     assert (upper.get_ylabel(), lower.get_xlabel()) == (
-        "B, eccentricity y\n(mm)", "B clearance (mm)",
+        "B eccentricity y\n(mm)", "B clearance (mm)",
     )  # fmt: skip
 
 
@@ -529,7 +529,7 @@ def test_an_option_that_would_do_nothing_to_a_sweep_is_refused(tmp_path):
 
 def test_names():
     assert file_name("spectrum", "B.force.x@0.1..2") == "spectrum_B_force_x_0_1_2"
-    assert in_words("peak:B.contact_force@0.3..") == "peak of B, contact force (0.3..)"
+    assert in_words("peak:B.contact_force@0.3..") == "peak of B contact force (0.3..)"
     assert readable("joints.B.clearance") == "B clearance"
 
 

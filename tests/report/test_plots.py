@@ -78,8 +78,8 @@ def test_figure_and_rows(door, tmp_path):
         every = [plots.Curves(shown[0], plots.rows(shown[0].run, of))]
         made = plots.figure(every, [], of, (-np.inf, np.inf), [])
     upper, lower = made.axes
-    assert upper.get_ylabel() == "door angle, rate\n(deg/s)"
-    assert lower.get_ylabel() == "handle, force\n(N·m)"
+    assert upper.get_ylabel() == "door angle rate\n(deg/s)"
+    assert lower.get_ylabel() == "handle force\n(N·m)"
     assert lower.get_xlabel() == "door angle (deg)"
     assert upper.lines[0].get_xdata().max() == pytest.approx(np.degrees(0.6), abs=1e-3)
     assert "dot: begin" in made.get_suptitle()

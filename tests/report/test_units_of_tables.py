@@ -47,7 +47,7 @@ def test_rates_go_with_their_angle(units, sets, doors, tmp_path):
     [number] = lines(tmp_path / "numbers.csv")
     assert (float(number["value"]), number["unit"]) == (pytest.approx(216.0), "deg/s")
     assert "door_angle.rate [deg/s/sqrt(Hz)]" in lines(tmp_path / "spectrum_door_angle_rate.csv")[0]
-    density = [line for line in found.lines if "rms" in line]
+    density = [line for line in found.lines if "Hann window" in line]
     assert all("deg/s, resolution" in line for line in density)
 
 

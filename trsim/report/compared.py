@@ -19,7 +19,7 @@ from trsim.errors import UsageError, known
 from trsim.report import style
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
 from trsim.report.display import Shown, short
-from trsim.report.marks import spaced
+from trsim.report.marks import heading, spaced
 from trsim.report.spectra import label
 from trsim.report.style import apart, colour, panels, thinned, titled
 
@@ -173,7 +173,7 @@ def figure(
     told = f"largest difference {short(worst.largest * factor, 3)} {unit}"
     if any(np.isfinite(off.apart) for off in offs):
         told += " until chance parts them (dotted)"
-    titled(made, runs if len(named) > 2 else runs[:1], f"{spaced(channel).capitalize()}: {told}")
+    titled(made, runs if len(named) > 2 else runs[:1], f"{heading(channel)}: {told}")
     made.align_ylabels()
     handles = upper.get_legend_handles_labels()
     made.legend(*handles, loc="outside lower center",

@@ -42,7 +42,7 @@ def named_value(one: Shown, units: Units, key: str, value: Any) -> str:
 
 
 def in_words(word: str) -> str:
-    """peak:B.contact_force@0.3..0.9 -> peak of B, contact force (0.3..0.9)."""
+    """peak:B.contact_force@0.3..0.9 -> peak of B contact force (0.3..0.9)."""
     name, _, part = word.partition("@")
     kind, _, of = name.partition(":")
     return f"{kind} of {spaced(of)}" + (f" ({part})" if part else "")
