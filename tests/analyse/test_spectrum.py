@@ -63,6 +63,23 @@ def test_a_straight_line_is_no_oscillation():
     assert found.rms < 1e-10
 
 
+def test_what_is_slower_than_a_segment_is_lacking():
+    """A sine of 2.5 periods: 8 segments, each of half a period, hold a twentieth of its power."""
+    x = np.sin(2 * np.pi * t / 8.0)
+    found = spectrum(t, x)
+    assert found.length == pytest.approx(4.444)
+    assert found.bent == pytest.approx(np.std(x), rel=0.1)
+    assert found.lacks == pytest.approx(1.0 - (found.rms / found.bent) ** 2)
+    assert found.lacks > 0.7 and not found.sloped
+    once = spectrum(t, x, 1)
+    assert once.lacks < 0.2
+    for all_of_it in (noise(), np.sin(2 * np.pi * t), np.full(len(t), 1e5), 5.0 + noise()):
+        assert not spectrum(t, all_of_it).lacks
+    ramp = spectrum(t, 5.0 + 3.0 * t + noise())
+    assert ramp.sloped and not ramp.lacks
+    assert not spectrum(t, 0.1 * t + noise()).lacks
+
+
 def test_what_goes_on_beyond_nyquist_is_told():
     assert "folded back" in spectrum(t, noise()).warnings[0]
     slow = np.convolve(noise(), np.hanning(41) / np.hanning(41).sum(), "same")

@@ -377,6 +377,7 @@ def test_figures(drop, here, monkeypatch):
     fails(trsim.UsageError, lambda: found[0].save(here / "x.png"), "exists")
     assert drop.report(here / "all") and drop.plot()
     fails(trsim.UsageError, lambda: drop.plot("ball.place"), "ball.place")
+    fails(trsim.UsageError, lambda: drop.plot("ball.position.y", window="90..91"), "no row lies in")
 
 
 def test_result_of_no_result(here):

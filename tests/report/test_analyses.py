@@ -11,6 +11,7 @@ import pytest
 from tests import small
 from tests.analyse.studies import Case, Study
 from tests.report.test_figures import drawn
+from tests.report.test_plots import DOOR
 from trsim.analyse.bifurcation import diagram
 from trsim.analyse.cases import numbers
 from trsim.analyse.compare import curve, difference
@@ -68,6 +69,24 @@ def test_spectrum(several, paths, tmp_path):
         axes = spectra.figure(runs, one, "stroke").axes[0]
     assert axes.get_ylabel() == "stroke\n(mm/\u221aHz)"
     assert axes.get_xlabel() == "frequency (Hz)"
+
+
+def test_a_spectrum_without_most_of_the_motion_says_so(tmp_path):
+    """Half a period in 0.5 s: segments of 0.11 s have next to nothing of it."""
+    small.run(tmp_path / "run.h5", text=DOOR)
+    found = analysed([tmp_path / "run.h5"], tmp_path, Asked(spectrum=("door_angle",)))
+    run = read(tmp_path / "run.h5")
+    one = spectra.of_channel(run, "door_angle", spectra.window(run))
+    rms = np.std(run.channel("door_angle"))
+    [text] = [line for line in found.lines if "lacks" in line]
+    assert f"lacks {one.lacks:.0%} of the variance of the rows, " in text
+    assert f"whose rms about a straight line is {rms:.4g} rad" in text
+    assert "segments of 0.11 s" in text
+    with look():
+        title = spectra.figure(compared([run]), [one], "door_angle").get_suptitle()
+    assert f"lacks {one.lacks:.0%} of the variance, in motion slower than 0.11 s" in " ".join(
+        title.split()
+    )
 
 
 def test_a_single_stroke_has_no_exponent(paths, tmp_path):
@@ -319,7 +338,7 @@ def test_bifurcation(study, tmp_path):
     with look():
         upper, lower = bifurcated(studies.shown(study), diagram(study, "journal:y")).axes
     assert (upper.get_ylabel(), lower.get_xlabel()) == (
-        "B, eccentricity y\n(mm)", "B clearance (mm)",
+        "B eccentricity y\n(mm)", "B clearance (mm)",
     )  # fmt: skip
 
 
@@ -513,7 +532,7 @@ def test_an_option_that_would_do_nothing_to_a_sweep_is_refused(tmp_path):
 
 def test_names():
     assert file_name("spectrum", "B.force.x@0.1..2") == "spectrum_B_force_x_0_1_to_2"
-    assert in_words("peak:B.contact_force@0.3..") == "peak of B, contact force (0.3..)"
+    assert in_words("peak:B.contact_force@0.3..") == "peak of B contact force (0.3..)"
     assert readable("joints.B.clearance") == "B clearance"
 
 

@@ -13,7 +13,7 @@ from trsim.report.animation import film, forces, section, solids, turns, write
 from trsim.report.animation.bodies import rails, skeleton
 from trsim.report.animation.fittings import pins
 from trsim.report.animation.lines import lines
-from trsim.report.animation.motion import FRAMES, frames, motion
+from trsim.report.animation.motion import FRAMES, even_frames, frames, motion
 from trsim.report.animation.page import arrow_scale
 from trsim.report.animation.things import colours, look
 
@@ -250,6 +250,31 @@ def test_frames(rows):
     assert (found[0], found[-1]) == (0, rows - 1)
     if rows > FRAMES:
         assert np.abs(time[found] - np.linspace(0.0, 1.0, FRAMES)).max() <= 0.5 / (rows - 1) + 1e-12
+
+
+@pytest.mark.parametrize(("rows", "found"), [(600, 600), (601, 301), (801, 401), (1800, 451),
+                                             (10_000, 590)])  # fmt: skip
+def test_even_frames(rows, found):
+    """Every k-th row, and the last one whatever is left; rows at events are passed over."""
+    time = np.linspace(0.0, 8.0, rows)
+    kept = even_frames(time)
+    assert len(kept) == found
+    assert (kept[0], kept[-1]) == (0, rows - 1)
+    assert len({*np.diff(kept)[:-1]}) == 1
+    if rows > FRAMES:
+        events = np.sort(np.concatenate([time, [1.0, 1.0, 2.34567, 5.0001]]))
+        again = events[even_frames(events)]
+        np.testing.assert_allclose(again, time[kept], rtol=0.0, atol=1e-9)
+
+
+def test_frames_of_rows_that_are_not_even():
+    """As even as the rows are: bursts of rows do not take the frames of the rest."""
+    burst = 4.0 + 1e-6 * np.arange(5000)
+    time = np.sort(np.concatenate([np.linspace(0.0, 8.0, 2000), burst]))
+    kept = time[even_frames(time)]
+    assert len(kept) <= FRAMES
+    assert np.diff(kept).max() < 0.02
+    assert len(even_frames(np.r_[np.zeros(700), 1.0])) == 2
 
 
 def test_turns():

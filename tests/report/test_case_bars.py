@@ -83,7 +83,7 @@ def test_groups_and_series(cases):
     left, right = made.axes  # each with its own places: three cases by one and by two numbers
     assert len(right.get_yticks()) == len(left.get_yticks()) == 2
     assert right.get_ylim()[0] > left.get_ylim()[0]
-    assert left.get_xlabel() == "peak of hinge, reaction (N)"
+    assert left.get_xlabel() == "peak of hinge reaction (N)"
     assert right.get_xlabel() == "(deg)"
     assert [tick.get_text() for tick in left.get_yticklabels()] == ["limit", "jam"]
     assert max(bar.get_width() for bar in left.patches) == pytest.approx(FALLEN, rel=1e-6)

@@ -12,6 +12,7 @@ from trsim.report import analysed, plots
 from trsim.report.asked import Asked
 from trsim.report.curves import ALL, Curves, View, figure
 from trsim.report.display import compared
+from trsim.report.marks import heading
 from trsim.report.style import look
 from trsim.store.read import read
 
@@ -65,9 +66,22 @@ def test_what_most_happens_in_is_enlarged(disc, tmp_path):
     assert right.get_xlim() == (0.5, 0.75)
 
 
+def test_a_channel_reads_as_one_quantity(disc):
+    """Without a comma where its name has a dot; a magnitude keeps its bars on the axis, too."""
+    one = made("|disc.velocity| : turned.rate", View(zoom=None), disc)
+    [axes] = one.axes
+    assert axes.get_ylabel() == "|disc velocity|\n(m/s)"
+    assert axes.get_xlabel() == "turned rate (deg/s)"
+    title = one.get_suptitle().split("\n")[0]
+    assert title.startswith("|disc velocity| over turned rate")
+    left, _ = made("|disc.velocity|, turned", View(second_axis=True), disc).axes
+    assert left.get_ylabel() == "|disc velocity| (m/s)"
+    assert heading("crank_B.angle") == "Crank B angle"
+
+
 def test_second_axis(disc, tmp_path):
     left, right = made("turned, turned.rate", View(second_axis=True), disc).axes
-    assert (left.get_ylabel(), right.get_ylabel()) == ("turned (deg)", "turned, rate (deg/s)")
+    assert (left.get_ylabel(), right.get_ylabel()) == ("turned (deg)", "turned rate (deg/s)")
     assert left.bbox.bounds == right.bbox.bounds
     assert left.lines[0].get_color() != right.lines[0].get_color()
     with pytest.raises(UsageError, match="for two units; these channels have rad"):

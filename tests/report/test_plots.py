@@ -80,8 +80,8 @@ def test_figure_and_rows(door, tmp_path):
         every = [plots.Curves(shown[0], plots.rows(shown[0].run, of))]
         made = plots.figure(every, [], of, (-np.inf, np.inf), [])
     upper, lower = made.axes
-    assert upper.get_ylabel() == "door angle, rate\n(deg/s)"
-    assert lower.get_ylabel() == "handle, force\n(N·m)"
+    assert upper.get_ylabel() == "door angle rate\n(deg/s)"
+    assert lower.get_ylabel() == "handle force\n(N·m)"
     assert lower.get_xlabel() == "door angle (deg)"
     assert upper.lines[0].get_xdata().max() == pytest.approx(np.degrees(0.6), abs=1e-3)
     assert "dot: begin" in made.get_suptitle()
@@ -155,6 +155,24 @@ def test_tables_that_say_too_little(door, tmp_path):
                         (Asked(plot=("nothing",)), "no channel named 'nothing'")):  # fmt: skip
         with pytest.raises(UsageError, match=what):
             analysed([door], tmp_path, asked)
+
+
+def test_a_window_that_no_run_reaches(door, tmp_path):
+    """Refused as `@5..6` is, with what there is, before anything is written."""
+    asked = Asked(plot=("door_angle.rate",))
+    over = Asked(plot=("door_angle.rate : door_angle",))
+    (tmp_path / "a.csv").write_text("time [s],door_angle.rate [rad/s]\n0.1,1\n5.5,2\n6,2\n")
+    for one, where in (
+        (asked._replace(window="5..6"), "'5..6'; time goes from 0 to 0.5 s"),
+        (asked._replace(zoom="5..6"), "'5..6'; time goes from 0 to 0.5 s"),
+        (asked._replace(window="5..6", second_axis=True), "'5..6'"),
+        (asked._replace(window="5..6", overlay=(str(tmp_path / "a.csv"),)), "'5..6'"),
+        (over._replace(window="50deg.."), "door_angle goes from .* to 0.6 rad"),
+    ):
+        with pytest.raises(UsageError, match=f"door.h5: no row lies in .*{where}"):
+            analysed([door], tmp_path / "out", one)
+    assert list((tmp_path / "out").iterdir()) == []
+    assert analysed([door], tmp_path / "out", asked._replace(window="0.5..6")).files
 
 
 def test_words_of_the_same_letters_have_files_of_their_own(door, tmp_path):

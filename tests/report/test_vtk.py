@@ -143,6 +143,18 @@ def test_a_flat_mechanism_stays_in_its_plane(tmp_path):
     np.testing.assert_allclose(0.5 * (low + high), run.channel("slider.position")[-1], atol=1e-9)
 
 
+def test_the_motion_does_not_jerk(tmp_path):
+    """Of 801 rows every second one; all, 600 of them would be one row apart, or two."""
+    small.run(tmp_path / "run.h5", "solver.end=8 ms")
+    run = read(tmp_path / "run.h5")
+    assert run.rows == 801
+    count, _ = write(run, tmp_path / "x.pvd")
+    root = tree.parse(tmp_path / "x.pvd").getroot()  # noqa: S314
+    times = [float(one.get("timestep")) for one in root.iter("DataSet")]
+    assert count == len(times) == 401
+    np.testing.assert_allclose(np.diff(times), 2e-5, rtol=1e-9)
+
+
 def test_command_and_what_it_replaces(tmp_path, monkeypatch):
     from trsim.cli import main
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trsim.analyse.window import ends, parted, scalar_channel, window
+from trsim.analyse.window import between, ends, parted, scalar_channel, window
 from trsim.arrays import Array
-from trsim.errors import UsageError
+from trsim.errors import UsageError, described
 from trsim.store.read import Run
 
 WRITTEN = "A plot is 'Y, Y2 : X', for example 'door_angle.rate : door_angle'; X is time unless said"
@@ -63,3 +63,16 @@ def limits(text: str, si: str) -> tuple[float, float]:
     if low >= high:
         raise UsageError(f"window {text} has no width", OF_X)
     return low, high
+
+
+def check_reached(run: Run, x: str, of: Array, text: str, within: tuple[float, float]) -> None:
+    """Check that a stretch of an abscissa holds a row of a run.  Raises UsageError.
+
+    of: the rows of the abscissa that are drawn.  text: the stretch as it was asked for.
+    """
+    there = of[np.isfinite(of)]
+    if not text or not there.size or between(there, within).any():
+        return
+    si = run.unit(x)
+    told = f"{x} goes from {there.min():.6g} to {there.max():.6g}{'' if si == '-' else f' {si}'}"
+    raise UsageError(f"{run.path}: no row lies in {described(text)}; {told}", OF_X)

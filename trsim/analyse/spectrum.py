@@ -27,6 +27,9 @@ folded back from F has A' = 2 pi F A.  It is told where F is beyond f_N, and mor
 may come from fs - f or beyond, where it has at least 2 pi (fs - f) times its part of A:
 
     part <= (F - f) / (fs - f)
+
+What is slower than a segment goes with the straight lines, and little counts of the first and last
+half of one.  How much of the rows is lost so, of their variance about one straight line, is told.
 """
 
 from collections.abc import Iterator
@@ -50,6 +53,8 @@ PEAKS = 6  # told
 TOP = 0.9  # of the Nyquist frequency: what lies above is near it
 FOLDED = 0.01  # of the variance: more is told
 STRANGE = 0.1  # of a line: what may come from beyond, more is told
+LACKED = 0.1  # of the variance of the rows: more is told
+STILL = 1e-9  # of the largest value: what moves less is rounding
 MISSED = 0.1  # of the range: an extreme between the rows that is further out is told
 # the last word of a channel -> that of its rate, where that is another word
 RATES = {
@@ -83,6 +88,20 @@ class Spectrum(NamedTuple):
     peaks: tuple[Peak, ...]  # largest amplitude first
     folded: float  # share of the variance that may have been folded back
     warnings: tuple[str, ...]
+    length: float  # of a segment, s
+    rows: float  # rms of the rows about their mean, in the unit
+    bent: float  # about the straight line through them
+
+    @property
+    def lacks(self) -> float:
+        """The share of the variance about that line that the density lacks, nothing if small."""
+        share = 1.0 - (self.rms / self.bent) ** 2 if self.bent > 0.0 else 0.0
+        return share if share > LACKED else 0.0
+
+    @property
+    def sloped(self) -> bool:
+        """Whether that line, which no density holds, is much of the rows."""
+        return self.bent**2 < (1.0 - LACKED) * self.rows**2
 
 
 def spectrum(t: Array, x: Array, segments: int = SEGMENTS) -> Spectrum:
@@ -114,7 +133,18 @@ def spectrum(t: Array, x: Array, segments: int = SEGMENTS) -> Spectrum:
     resolution = WIDTH * float(f[1])
     return Spectrum(f, np.sqrt(p), count, resolution, float(f[-1]), float(low),
                     float(high), float(np.sqrt(variance)), peaks(f, p, resolution), folded,
-                    tuple(warnings))  # fmt: skip
+                    tuple(warnings), each / rate, *moved(t, x))  # fmt: skip
+
+
+def moved(t: Array, x: Array) -> tuple[float, float]:
+    """The rms of rows about their mean, and about the straight line through them."""
+    s = t - np.mean(t)
+    about = x - np.mean(x)
+    bent = about - s * (s @ about) / (s @ s)
+    still = STILL * float(np.max(np.abs(x)))
+    sizes = (float(np.sqrt(np.mean(one**2))) for one in (about, bent))
+    rows, rest = (size if size > still else 0.0 for size in sizes)
+    return rows, rest
 
 
 def sampling(t: Array) -> float:

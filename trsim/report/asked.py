@@ -45,7 +45,7 @@ class Value(NamedTuple):
     what   the word that asked for it, or what it is
     value  in the unit; none where the run has nothing to make it of
     half   of its 95 % interval; none without one
-    unit   SI
+    unit   SI, or as chosen
     """
 
     run: str

@@ -6,7 +6,7 @@ import numpy as np
 
 from trsim.arrays import Array
 from trsim.report.display import Shown
-from trsim.report.marks import spaced
+from trsim.report.marks import heading
 from trsim.report.style import DASHES, apart, colour, finished, panels, thinned, titled
 
 SHAPES = 9  # of one run
@@ -43,7 +43,7 @@ def forces(runs: list[Shown], bar: str) -> Any:
         a.margins(x=0.01)
         apart(a)
     axes[-1, 0].set_xlabel(one.time_label)
-    text = f"{spaced(bar).capitalize()}: largest and (dashed) least along the bar"
+    text = f"{heading(bar)}: largest and (dashed) least along the bar"
     return finished(figure, axes[0, 0], there, text)
 
 
@@ -64,7 +64,7 @@ def shapes(runs: list[Shown], bar: str) -> Any:
         if shown.label:
             a.set_title(shown.label, fontsize=8)
     axes[0, 0].set_ylabel(f"{'xyz'[y]} ({there[0].display('m')[1]})")
-    titled(figure, there, f"{spaced(bar).capitalize()} at {SHAPES} times, the last one black")
+    titled(figure, there, f"{heading(bar)} at {SHAPES} times, the last one black")
     return figure
 
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from trsim.analyse.cases import Numbers, reasons
 from trsim.errors import UsageError
-from trsim.report import style
-from trsim.report.asked import Found, Value, file_name, nothing, table
+from trsim.report import case_table, style
+from trsim.report.asked import Found, Value, file_name, nothing
 from trsim.report.display import Shown, short
 from trsim.report.keys import Units, in_words, named_value, readable
 from trsim.report.style import NO_NUMBER, colour, panels
@@ -36,18 +36,12 @@ def draw(study: Any, one: Shown, of: list[Numbers], folder: Path) -> Found:
         what = f"{len(of) * len(study.cases)} bars in a figure cannot be told apart"
         raise UsageError(what, f"At most {MOST}: ask for fewer at a time, or for --table.")
     found.files.append(style.draw(folder / f"{name}.png", figure, study, one, of))
-    titles = ["case", "status", *(f"{k} [{study.units.get(k, '-')}]" for k in study.keys)]
-    titles += [f"{each.word} [{each.unit}]" for each in of]
-    rows = [
-        (case.name, case.status, *(case.values.get(key, "") for key in study.keys),
-         *(each.values[case.name] for each in of))
-        for case in study.cases
-    ]  # fmt: skip
-    found.files.append(table(folder / f"{name}.csv", titles, rows))
+    found.files.append(case_table.written(folder / f"{name}.csv", study, one, of))
     for each in of:
         found.lines.extend(reasons(each.why))
+        factor, unit = one.told(each.unit)
         found.values.extend(
-            Value(case.name, each.word, each.values[case.name], np.nan, each.unit)
+            Value(case.name, each.word, each.values[case.name] * factor, np.nan, unit)
             for case in study.cases
         )
     return found

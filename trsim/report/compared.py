@@ -19,12 +19,10 @@ from trsim.errors import UsageError, known
 from trsim.report import style
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
 from trsim.report.display import Shown, short
-from trsim.report.marks import spaced
+from trsim.report.marks import heading, spaced
 from trsim.report.spectra import label
 from trsim.report.style import apart, colour, panels, thinned, titled
 
-TITLES = ("channel", "run", "unit", "largest difference", "at", "rms", "of range", "apart from",
-          "mean of first", "mean", "rms of first", "rms of run")  # fmt: skip
 COARSE = 200  # rows: a table of fewer is drawn as points, nothing is known between them
 Named = tuple[str, Curve, Difference | None]  # label, curve, what it is apart from the first
 
@@ -44,11 +42,12 @@ def draw(runs: list[Shown], asked: Asked, folder: Path) -> Found:
         for shown, one, apart_from in zip(runs[1:], curves[1:], gone, strict=True):
             off = difference(channel, unit, curves[0], one, apart_from)
             named.append((label(shown), one, off))
+            off = in_units(runs[0], off, asked.against)
             rows.append(row(channel, label(shown), off))
             note(found, label(shown), off, asked.against)
         path = folder / f"{file_name('compare', channel)}.png"
         found.files.append(style.draw(path, figure, runs, channel, asked.against, named))
-    found.files.append(table(folder / "compare.csv", TITLES, rows))
+    found.files.append(table(folder / "compare.csv", titles(runs[0], asked.against), rows))
     return found
 
 
@@ -67,13 +66,14 @@ def overlay(runs: list[Shown], word: str, against: str, folder: Path) -> Found:
         one = curve(shown.run, channel, against)
         off = difference(channel, unit, given, one)
         named.append((shown.label or "run", one, off))
+        off = in_units(runs[0], off, against)
         rows.append(row(channel, label(shown), off))
         note(found, label(shown), off, against)
     name = file_name("overlay", f"{Path(file).stem} {channel}")
     drawn = style.draw(folder / f"{name}.png", figure, runs, channel, against, named,
                        coarse=len(given.s) < COARSE)  # fmt: skip
     found.files.append(drawn)
-    found.files.append(table(folder / f"{name}.csv", TITLES, rows))
+    found.files.append(table(folder / f"{name}.csv", titles(runs[0], against), rows))
     return found
 
 
@@ -91,6 +91,32 @@ def chosen(runs: list[Shown], patterns: tuple[str, ...]) -> list[str]:
         if not any(fnmatch.fnmatchcase(name, pattern) for name in names):
             raise UsageError(f"no common channel fits '{pattern}'", known(pattern, names))
     return [n for n in names if any(fnmatch.fnmatchcase(n, p) for p in patterns)]
+
+
+def titles(first: Shown, against: str) -> tuple[str, ...]:
+    """Of the columns; places on the abscissa are SI unless they say their unit."""
+    si = abscissa(first, against)
+    text = first.told(si)[1]
+    unit = f" [{text}]" if text != si else ""
+    return ("channel", "run", "unit", "largest difference", f"at{unit}", "rms", "of range",
+            f"apart from{unit}", "mean of first", "mean", "rms of first", "rms of run")  # fmt: skip
+
+
+def abscissa(first: Shown, against: str) -> str:
+    """The SI unit of what runs are compared over."""
+    return first.run.unit(against) if against else "s"
+
+
+def in_units(first: Shown, off: Difference, against: str) -> Difference:
+    """The numbers of a difference in the units of tables."""
+    factor, unit = first.told(off.unit)
+    over = first.told(abscissa(first, against))[0]
+    a, b = off.means
+    c, d = off.levels
+    return off._replace(unit=unit, largest=off.largest * factor, rms=off.rms * factor,
+                        at=off.at * over, apart=off.apart * over,
+                        means=(a * factor, b * factor),
+                        levels=(c * factor, d * factor))  # fmt: skip
 
 
 def row(channel: str, name: str, off: Difference) -> tuple[Any, ...]:
@@ -122,7 +148,7 @@ def figure(
     made, axes = panels(2, height=2.2, sharex=True, height_ratios=(3, 2))
     upper, lower = axes[:, 0]
     first, points = runs[0], {"ls": "", "marker": "o", "ms": 2.5}
-    over, over_unit = first.display(first.run.unit(against) if against else "s")
+    over, over_unit = first.display(abscissa(first, against))
     factor, unit = first.display(first.run.unit(channel))
     for k, (name, one, off) in enumerate(named):
         line = points if coarse and not k else {"ls": "--" if k and not coarse else "-"}
@@ -147,7 +173,7 @@ def figure(
     told = f"largest difference {short(worst.largest * factor, 3)} {unit}"
     if any(np.isfinite(off.apart) for off in offs):
         told += " until chance parts them (dotted)"
-    titled(made, runs if len(named) > 2 else runs[:1], f"{spaced(channel).capitalize()}: {told}")
+    titled(made, runs if len(named) > 2 else runs[:1], f"{heading(channel)}: {told}")
     made.align_ylabels()
     handles = upper.get_legend_handles_labels()
     made.legend(*handles, loc="outside lower center",

@@ -9,7 +9,7 @@ import numpy as np
 from trsim import elements
 from trsim.report import style
 from trsim.report.display import Shown
-from trsim.report.marks import happened, spaced
+from trsim.report.marks import happened, heading
 from trsim.report.style import DASHES, colour, panels, thinned, titled
 
 MOTIONS = ("position", "velocity", "angular_velocity")
@@ -77,7 +77,7 @@ def drawn(runs: list[Shown], channels: list[str], name: str) -> Any:
         happened(a, runs)
     axes[-1, 0].set_xlabel(runs[0].time_label)
     figure.align_ylabels()
-    titled(figure, runs, spaced(name).capitalize())
+    titled(figure, runs, heading(name))
     labels = {text: line for a in axes[:, 0]
               for line, text in zip(*a.get_legend_handles_labels(), strict=True)}  # fmt: skip
     if labels:

@@ -112,7 +112,7 @@ def panel(axes: Any, drawn: Drawn, channels: list[str], within: Limits) -> None:
         ends = [y, y - one.off.largest * scale]
         axes.plot(x, ends, "-", color="0.3", lw=0.8)
         axes.plot(x[:1], ends[:1], "o", ms=3.5, color="0.2", mec="white", mew=0.5, zorder=5)
-    what = spaced(channels[0].strip("|")) if len(channels) == 1 else ""
+    what = spaced(channels[0]) if len(channels) == 1 else ""
     axes.set_ylabel(f"{what}\n({text})" if what else f"({text})")
     axes.margins(x=0.01)
     style.apart(axes)
@@ -132,7 +132,7 @@ def two_axes(drawn: Drawn) -> Any:
     for a, channels in zip((left, right), groups.values(), strict=True):
         panel(a, drawn, channels, drawn.within)
         text = drawn.first.display(drawn.first.run.unit(channels[0]))[1]
-        a.set_ylabel(f"{', '.join(spaced(one.strip('|')) for one in channels)} ({text})")
+        a.set_ylabel(f"{', '.join(spaced(one) for one in channels)} ({text})")
     left.set_xlabel(abscissa(drawn))
     finish(made, (left, right), drawn, "")
     return made

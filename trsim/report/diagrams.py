@@ -8,6 +8,7 @@ import numpy as np
 from trsim.analyse.bifurcation import Diagram, period_in_words
 from trsim.analyse.cases import numeric, reasons
 from trsim.report.asked import Found, Value, file_name, nothing, table
+from trsim.report.case_table import scaled
 from trsim.report.display import Shown
 from trsim.report.keys import Units, axis, named_value
 from trsim.report.marks import spaced
@@ -24,12 +25,13 @@ def bifurcation(one: Shown, of: Diagram, folder: Path) -> Found:
     found = nothing()
     name = file_name("bifurcation", f"{of.section} {of.axis}")
     found.files.append(draw(folder / f"{name}.png", bifurcated, one, of))
+    factor, text = one.told(of.units.get(of.over, "-"))
     rows = [
-        (each.case, each.over, each.period, x, y)
+        (each.case, scaled(each.over, factor), each.period, x, y)
         for each in of.cases
         for x, y in zip(each.x.tolist(), each.y.tolist(), strict=True)
     ]
-    titles = ("case", f"{of.over} [{of.units.get(of.over, '-')}]", "period", "x", "y")
+    titles = ("case", f"{of.over} [{text}]", "period", "x", "y")
     found.files.append(table(folder / f"{name}.csv", titles, rows, headed("case", "", "period")))
     for each in of.cases:
         what = f"{of.section}: {period_in_words(each.period)}"

@@ -26,10 +26,10 @@ class Shown(NamedTuple):
     run: Run
     label: str
     units: Mapping[str, tuple[float, str]]  # SI unit -> factor, display unit
-    asked: Mapping[str, tuple[float, str]] = {}  # those of an option: tables have them, too
+    asked: Mapping[str, tuple[float, str]] = {}  # those somebody chose: tables have them, too
 
     def told(self, si: str) -> tuple[float, str]:
-        """Factor and text of the unit in tables: SI, but where an option asks for another one."""
+        """Factor and text of the unit in tables: that of figures where one is chosen, else SI."""
         return self.asked.get(si, (1.0, si))
 
     def unit(self, channel: str) -> str:
@@ -64,13 +64,13 @@ def compared(runs: list[Run], asked: Mapping[str, tuple[float, str]] | None = No
     asked: SI unit -> factor and unit, of an option.
     """
     given = (runs[0].scenario.get("report") or {}).get("units") or {}
+    chosen = in_si(given) | with_rates(asked or {})
     units = display_units(given)
-    units |= of_angles(asked or {})
     if "time" not in given and max(run.summary.get("time", 1.0) for run in runs) < SHORT:
         units["s"] = (1e3, "ms")
-    units |= {si: (factor, written(text)) for si, (factor, text) in (asked or {}).items()}
+    units |= {si: (factor, written(text)) for si, (factor, text) in chosen.items()}
     labels = told_apart(runs) if len(runs) > 1 else [""]
-    return [Shown(run, label, units, asked or {}) for run, label in zip(runs, labels, strict=True)]
+    return [Shown(run, label, units, chosen) for run, label in zip(runs, labels, strict=True)]
 
 
 def told_apart(runs: list[Run]) -> list[str]:
@@ -92,24 +92,26 @@ def display_units(chosen: Mapping[str, str]) -> dict[str, tuple[float, str]]:
     The unit of length is for sizes and clearances: velocities and accelerations of bodies stay in
     m/s and m/s^2, angles take their unit along to their rates.
     """
-    units = {}
-    for kind, text in {**DEFAULT, **chosen}.items():  # the angle first: others replace its rates
+    every = in_si({**DEFAULT, **chosen})
+    return {si: (factor, written(text)) for si, (factor, text) in every.items()}
+
+
+def in_si(chosen: Mapping[str, str]) -> dict[str, tuple[float, str]]:
+    """SI unit -> factor and unit, for kinds and units; nonsense is left out."""
+    found = {}
+    for kind, text in chosen.items():
         try:
-            si = replaced(kind, text)
+            found[replaced(kind, text)] = 1.0 / float(unit(text)[0]), text
         except ScenarioError:
             continue
-        units[si] = 1.0 / float(unit(text)[0]), written(text)
-        if si == "rad":
-            units |= of_angles({si: (units[si][0], text)})
-    return units
+    return with_rates(found)
 
 
-def of_angles(chosen: Mapping[str, tuple[float, str]]) -> dict[str, tuple[float, str]]:
-    """Rates of angles in the unit that is chosen for angles."""
-    if "rad" not in chosen:
-        return {}
-    factor, text = chosen["rad"]
-    return {f"rad{rate}": (factor, written(text + rate)) for rate in ("/s", "/s^2")}
+def with_rates(chosen: Mapping[str, tuple[float, str]]) -> dict[str, tuple[float, str]]:
+    """The same with the rates of angles in the unit of angles, unless they have their own."""
+    factor, text = chosen.get("rad", (1.0, ""))
+    rates = {f"rad{rate}": (factor, text + rate) for rate in ("/s", "/s^2")} if text else {}
+    return {**rates, **chosen}
 
 
 def written(text: str) -> str:

@@ -27,13 +27,14 @@ def draw(study: Any, one: Shown, asked: Asked, folder: Path) -> Found:
     there = [each for each in of if each.name in drawn_names]
     found.files.extend(pictures(one, there, folder))
     found.files.append(worst(one, of, asked.at, others, folder))
-    found.files.append(every(study, of, folder))
+    found.files.append(every(study, one, of, folder))
     for each in there:
         met = each.cases[each.worst]
         what = f"{each.extreme} {each.name} in {each.worst} at {met.time:.6g} s"
-        found.values.append(Value(each.worst, f"{each.name}: {each.extreme}", met.value, np.nan,
-                                  each.unit))  # fmt: skip
-        found.lines.append(f"{what}: {met.value:.6g} {each.unit}")
+        factor, text = one.told(each.unit)
+        value = met.value * factor
+        found.values.append(Value(each.worst, f"{each.name}: {each.extreme}", value, np.nan, text))
+        found.lines.append(f"{what}: {value:.6g} {text}")
     zero = [name for name in dict.fromkeys(each.name for each in of) if name not in drawn_names]
     found.lines.extend([f"zero in every case: {', '.join(zero)}"] if zero else [])
     found.lines.extend(doubted(of))
@@ -66,17 +67,19 @@ def absent(of: list[Quantity]) -> list[str]:
 
 def worst(one: Shown, of: list[Quantity], at: str, others: list[str], folder: Path) -> Path:
     """A line for each extreme: where it is met, and what acted then."""
-    over = [f"{at} [{unit(one, at)}]"] if at else []
-    beside = [f"{name} [{unit(one, name)}]" for name in others]
-    titles = ["quantity", "extreme", "unit", "value", "case", "time [s]", *over, "known from",
-              "in rows", *AXES, *beside]  # fmt: skip
+    units = {name: one.told(unit(one, name)) for name in ("time", at, *others) if name}
+    over = [f"{at} [{units[at][1]}]"] if at else []
+    beside = [f"{name} [{units[name][1]}]" for name in others]
+    titles = ["quantity", "extreme", "unit", "value", "case", f"time [{units['time'][1]}]", *over,
+              "known from", "in rows", *AXES, *beside]  # fmt: skip
     rows = []
     for each in of:
-        met = each.cases[each.worst]
-        place = [met.at] if at else []
-        rows.append((each.name, each.extreme, each.unit, met.value, each.worst, met.time, *place,
-                     met.of, met.rows, *(met.acting.get(axis, "") for axis in AXES),
-                     *(met.acting[name] for name in others)))  # fmt: skip
+        met, (factor, text) = each.cases[each.worst], one.told(each.unit)
+        place = [met.at * units[at][0]] if at else []
+        acting = [met.acting[axis] * factor if axis in met.acting else "" for axis in AXES]
+        rows.append((each.name, each.extreme, text, met.value * factor, each.worst,
+                     met.time * units["time"][0], *place, met.of, met.rows * factor, *acting,
+                     *(met.acting[name] * units[name][0] for name in others)))  # fmt: skip
     return table(folder / "envelope.csv", titles, rows)
 
 
@@ -85,16 +88,18 @@ def unit(one: Shown, channel: str) -> str:
     return one.run.unit(channel) if one.run.stores(channel) else "-"
 
 
-def every(study: Any, of: list[Quantity], folder: Path) -> Path:
+def every(study: Any, one: Shown, of: list[Quantity], folder: Path) -> Path:
     """The extremes of every case, of those without a result too."""
-    titles = ("case", "quantity", "extreme", "unit", "value", "time [s]", "status")
+    second, s = one.told("s")
+    titles = ("case", "quantity", "extreme", "unit", "value", f"time [{s}]", "status")
     none = Met(np.nan, np.nan, "", np.nan, np.nan, {})
     rows = []
     for case in study.cases:
         for each in of:
             met = each.cases.get(case.name, none)
-            rows.append((case.name, each.name, each.extreme, each.unit, met.value, met.time,
-                         case.status))  # fmt: skip
+            factor, text = one.told(each.unit)
+            rows.append((case.name, each.name, each.extreme, text, met.value * factor,
+                         met.time * second, case.status))  # fmt: skip
     return table(folder / "envelope_cases.csv", titles, rows)
 
 

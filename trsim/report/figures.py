@@ -10,7 +10,7 @@ import numpy as np
 from trsim.arrays import Array
 from trsim.report import bars, components, style
 from trsim.report.display import Shown, short
-from trsim.report.marks import happened, spaced
+from trsim.report.marks import happened, heading, spaced
 from trsim.report.orbits import impact_map, orbit, section
 from trsim.report.style import colour, finished, look, panels, save, thinned, titled
 from trsim.store.peaks import Peak
@@ -116,7 +116,7 @@ def motion(runs: list[Shown], sensor: str) -> Any:
         # what rounding of this value over the length of the run may look like in its rate
         noise = 1e-9 * largest / max(one.run.reached, 1e-300)
     axes[-1, 0].set_xlabel(runs[0].time_label)
-    return finished(figure, axes[0, 0], runs, spaced(sensor).capitalize())
+    return finished(figure, axes[0, 0], runs, heading(sensor))
 
 
 def drive_force(runs: list[Shown], drive: str) -> Any:

@@ -15,9 +15,10 @@ class Units(NamedTuple):
     written: Mapping[str, str]
 
     def display(self, one: Shown, key: str) -> tuple[float, str]:
-        """Factor and text of the unit a key is shown in: as written, where it was."""
-        if key not in self.written:
-            return one.display(self.si.get(key, "-"))
+        """Factor and text of the unit in figures: as chosen, else as written in the scenario."""
+        si = self.si.get(key, "-")
+        if key not in self.written or si in one.asked:
+            return one.display(si)
         return 1.0 / float(unit(self.written[key])[0]), written(self.written[key])
 
 
@@ -41,7 +42,7 @@ def named_value(one: Shown, units: Units, key: str, value: Any) -> str:
 
 
 def in_words(word: str) -> str:
-    """peak:B.contact_force@0.3..0.9 -> peak of B, contact force (0.3..0.9)."""
+    """peak:B.contact_force@0.3..0.9 -> peak of B contact force (0.3..0.9)."""
     name, _, part = word.partition("@")
     kind, _, of = name.partition(":")
     return f"{kind} of {spaced(of)}" + (f" ({part})" if part else "")

@@ -29,11 +29,9 @@ def draw(runs: list[Shown], folder: Path) -> Found:
         for law in of:
             name = file_name("law", law.name) + (f"_{k + 1}" if k else "")
             found.files.append(style.draw(folder / f"{name}.png", figure, shown, law))
-            found.files.append(written(folder / f"{name}.csv", law))
-            low, high = law.visited or (np.nan, np.nan)
-            lines.append((who + law.name, law.said, law.x, law.y, law.x_unit, law.y_unit, low, high,
-                          law.why))  # fmt: skip
-            found.lines.append(f"{who}{law.name}: {law.said}; {in_words(law)}")
+            found.files.append(written(folder / f"{name}.csv", shown, law))
+            lines.append((who + law.name, law.said, *columns(shown, law), law.why))
+            found.lines.append(f"{who}{law.name}: {law.said}; {in_words(shown, law)}")
         found.lines.extend(f"{who}{text}: not drawn" for text in lost)
     if not lines:
         found.lines.append("no law that varies, no contact and no curve: nothing is drawn")
@@ -47,23 +45,32 @@ def pairs(run: Any) -> list[str]:
     return [f"contact_laws.{name}: {law.taken}" for name, law in given.items() if law.pair]
 
 
-def in_words(law: Law) -> str:
+def columns(shown: Shown, law: Law) -> tuple[Any, ...]:
+    """Of what, what it gives, their units, and the range a run visited."""
+    (factor, x_unit), (_, y_unit) = shown.told(law.x_unit), shown.told(law.y_unit)
+    low, high = law.visited or (np.nan, np.nan)
+    return law.x, law.y, x_unit, y_unit, low * factor, high * factor
+
+
+def in_words(shown: Shown, law: Law) -> str:
     """The range a run visited."""
     if law.visited is None:
         return f"visited range not known: {law.why}" if law.why else "visited range not known"
-    of, unit = ("length along it", "m") if law.path else (law.x, law.x_unit)
-    text = f"visited {of} {law.visited[0]:.6g} to {law.visited[1]:.6g} {unit}"
+    of, si = ("length along it", "m") if law.path else (law.x, law.x_unit)
+    factor, unit = shown.told(si)
+    text = f"visited {of} {law.visited[0] * factor:.6g} to {law.visited[1] * factor:.6g} {unit}"
     return f"{text} ({law.why})" if law.why else text
 
 
-def written(path: Path, law: Law) -> Path:
-    """All that is drawn: which curve, x, y; SI, numbers in full."""
+def written(path: Path, shown: Shown, law: Law) -> Path:
+    """All that is drawn: which curve, x, y; numbers in full."""
     groups = {**law.curves}
     groups |= {"data": law.data} if law.data else {}
     groups |= {"steps of the run": law.met} if law.met else {}
-    rows = [(name, float(x), float(y)) for name, (xs, ys) in groups.items()
+    (fx, x_unit), (fy, y_unit) = shown.told(law.x_unit), shown.told(law.y_unit)
+    rows = [(name, float(x * fx), float(y * fy)) for name, (xs, ys) in groups.items()
             for x, y in zip(xs, ys, strict=True)]  # fmt: skip
-    titles = ("part", f"{law.x} [{law.x_unit}]", f"{law.y} [{law.y_unit}]")
+    titles = ("part", f"{law.x} [{x_unit}]", f"{law.y} [{y_unit}]")
     return table(path, titles, rows, headed("part", "", ""))
 
 

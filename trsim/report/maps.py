@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from trsim.analyse.bifurcation import check_swept
 from trsim.analyse.cases import Numbers, reasons
 from trsim.errors import UsageError
-from trsim.report.asked import Found, file_name, nothing, table
+from trsim.report import case_table
+from trsim.report.asked import Found, file_name, nothing
 from trsim.report.display import Shown, short
 from trsim.report.keys import Units, axis, in_words
 from trsim.report.style import look, panels, save
@@ -49,11 +50,8 @@ def drawn(study: Any, one: Shown, of: Numbers, over: str | None, folder: Path) -
         axes[0, 0].set_ylabel(axis(one, units, grid.keys[1]))
         made.colorbar(shade, label=f"{in_words(of.word)} ({unit})")
         found.files.append(save(made, folder / f"{file_name('map', of.word)}.png"))
-    titles = [f"{key} [{study.units.get(key, '-')}]" for key in grid.keys]
-    head = ["case", "status", *titles, f"{of.word} [{of.unit}]"]
-    rows = [(case.name, case.status, *(case.values[key] for key in grid.keys),
-             of.values.get(case.name, np.nan)) for case in study.cases]  # fmt: skip
-    found.files.append(table(folder / f"{file_name('map', of.word)}.csv", head, rows))
+    path = folder / f"{file_name('map', of.word)}.csv"
+    found.files.append(case_table.written(path, study, one, [of]))
     found.lines.extend(reasons(of.why))
     return found
 

@@ -23,5 +23,11 @@ def happened(axes: Any, runs: list[Shown]) -> None:
 
 
 def spaced(name: str) -> str:
-    """A channel as words: door_angle.rate -> door angle, rate."""
-    return name.replace(".", ", ").replace("_", " ")
+    """A channel as the words of one quantity: door_angle.rate -> door angle rate."""
+    return name.replace(".", " ").replace("_", " ")
+
+
+def heading(name: str) -> str:
+    """The same at the begin of a title; names inside keep their letters: crank_B -> Crank B."""
+    text = spaced(name)
+    return text[:1].upper() + text[1:]

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trsim.analyse.plotted import Plotted, limits, plotted, rows
+from trsim.analyse.plotted import Plotted, check_reached, limits, plotted, rows
 from trsim.analyse.reference import Given, given
 from trsim.analyse.turning import differences
 from trsim.analyse.window import between
@@ -47,7 +47,12 @@ def draw(
         of = magnitudes(of, first)
     tables, text = wanted.tables, wanted.window
     within = limits(text, first.unit(of.x) if first.stores(of.x) else "-")
+    zoom = enlarged(wanted.zoom, first, of)
     every = [Curves(shown, rows(shown.run, of)) for shown in runs]
+    for one in every:
+        check_reached(one.shown.run, of.x, one.rows.x, text, within)
+        if zoom:
+            check_reached(one.shown.run, of.x, one.rows.x, wanted.zoom, zoom)
     units = {channel: first.unit(channel) for channel in of.y}
     others = [given(Path(file), of.x, units, first.unit(of.x)) for file in tables]
     apart = list(compared(every, others, of, within))
@@ -55,7 +60,7 @@ def draw(
     while name in {path.stem for path in taken}:  # another word of the same letters
         name += "_too"
     path = folder / f"{name}.png"
-    view = View(wanted.second_axis, enlarged(wanted.zoom, first, of))
+    view = View(wanted.second_axis, zoom)
     found.files.append(style.draw(path, figure, every, others, of, within, apart, view))
     for k, one in enumerate(every):
         own = folder / f"{name}{f'_{k + 1}' if k else ''}.csv"
@@ -119,14 +124,15 @@ def written(
 def told(
     path: Path, every: list[Curves], of: Plotted, apart: list[Apart], tables: tuple[str, ...]
 ) -> Path:  # fmt: skip
-    """The differences: a line for each run, table, channel and branch, in SI units."""
-    over = every[0].shown.run.unit(of.x)
-    lines = []
+    """The differences: a line for each run, table, channel and branch, in the units of the rows."""
+    first, lines = every[0].shown, []
+    wide, over = first.told(first.run.unit(of.x))
     for one in apart:
         shown, off = every[one.run].shown, one.off
-        lines.append((label(shown), one.table, one.channel, shown.run.unit(one.channel), off.how,
-                      off.largest, off.at, over, off.value, off.rms, off.of_range, off.rows,
-                      off.asked))  # fmt: skip
+        factor, unit = shown.told(shown.run.unit(one.channel))
+        lines.append((label(shown), one.table, one.channel, unit, off.how, off.largest * factor,
+                      off.at * wide, over, off.value * factor, off.rms * factor, off.of_range,
+                      off.rows, off.asked))  # fmt: skip
     return table(path, TITLES, lines, given=tables)
 
 
@@ -134,16 +140,18 @@ def note(
     found: Found, every: list[Curves], tables: list[Given], of: Plotted, apart: list[Apart]
 ) -> None:
     """The differences among the numbers and lines of a report, and what speaks against them."""
-    over = every[0].shown.run.unit(of.x)
+    first = every[0].shown
+    wide, over = first.told(first.run.unit(of.x))
     for one in apart:
         shown, off = every[one.run].shown, one.off
-        unit = shown.run.unit(one.channel)
+        factor, unit = shown.told(shown.run.unit(one.channel))
+        largest, at = off.largest * factor, off.at * wide
         text = f"{label(shown)} less {one.table}, {one.channel} over {of.x}, {off.how}: "
-        text += f"largest difference {off.largest:.4g} {unit} at {of.x} = {off.at:.4g} {over}"
-        text += f" ({off.of_range:.2%} of its range), rms {off.rms:.3g} {unit}"
+        text += f"largest difference {largest:.4g} {unit} at {of.x} = {at:.4g} {over}"
+        text += f" ({off.of_range:.2%} of its range), rms {off.rms * factor:.3g} {unit}"
         found.lines.append(f"{text}; compared at {off.rows} of {off.asked} rows")
         what = f"{one.channel} less {one.table}, {off.how}"
-        found.values.append(Value(label(shown), what, off.largest, np.nan, unit))
+        found.values.append(Value(label(shown), what, largest, np.nan, unit))
     for other in tables:
         lost = [channel for channel in of.y if channel not in other.y]
         if lost:

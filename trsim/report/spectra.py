@@ -1,5 +1,6 @@
 """Spectral densities as figures: one panel, a curve for each run, lines that stand out named."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,25 +24,41 @@ def draw(runs: list[Shown], word: str, folder: Path) -> Found:
     spectra = [of_channel(s.run, channel, window(s.run, text)) for s in runs]
     name, found = file_name("spectrum", word), nothing()
     found.files.append(style.draw(folder / f"{name}.png", figure, runs, spectra, channel))
+    factor, unit = runs[0].told(runs[0].run.unit(channel))
     rows = [
         (label(s), f, d)
         for s, one in zip(runs, spectra, strict=True)
-        for f, d in zip(one.frequency.tolist(), one.density.tolist(), strict=True)
+        for f, d in zip(one.frequency.tolist(), (one.density * factor).tolist(), strict=True)
     ]
-    unit = runs[0].run.unit(channel)
     titles = ("run", "frequency [Hz]", f"{channel} [{unit}/sqrt(Hz)]")
     found.files.append(table(folder / f"{name}.csv", titles, rows))
     for shown, one in zip(runs, spectra, strict=True):
         found.lines.append(
-            f"{label(shown)}: {channel}: rms {one.rms:.4g} {unit}, resolution "
+            f"{label(shown)}: {channel}: rms {one.rms * factor:.4g} {unit}, resolution "
             f"{one.resolution:.3g} Hz, {one.segments} segments, Hann window"
         )
         for peak in one.peaks:
-            found.lines.append(f"  {peak.frequency:.5g} Hz: amplitude {peak.amplitude:.3g} {unit}")
+            size = peak.amplitude * factor
+            found.lines.append(f"  {peak.frequency:.5g} Hz: amplitude {size:.3g} {unit}")
             what = f"{channel}: amplitude at {peak.frequency:.5g} Hz"
-            found.values.append(Value(label(shown), what, peak.amplitude, np.nan, unit))
+            found.values.append(Value(label(shown), what, size, np.nan, unit))
+        found.lines.extend(f"  {text}" for text in lacking(one, factor, unit))
         found.lines.extend(f"  warning: {warning}" for warning in one.warnings)
     return found
+
+
+def lacking(one: Spectrum, factor: float, unit: str) -> Iterator[str]:
+    """What of the rows is not in their spectrum."""
+    if one.sloped:
+        yield (f"without the straight line through the rows, with which their rms is "
+               f"{one.rows * factor:.4g} {unit}")  # fmt: skip
+    if one.lacks:
+        yield (
+            f"warning: the spectrum lacks {one.lacks:.0%} of the variance of the rows, whose rms "
+            f"about a straight line is {one.bent * factor:.4g} {unit}: it has nothing slower than "
+            f"its segments of {one.length:.3g} s, and little of the ends of the rows; run longer, "
+            "or take a longer window"
+        )
 
 
 def label(shown: Shown) -> str:
@@ -70,6 +87,11 @@ def figure(runs: list[Shown], spectra: list[Spectrum], channel: str) -> Any:
     a.set_ylabel(f"{spaced(channel)}\n({per_root(unit)})")
     one = spectra[0]
     told = f"{one.segments} segments, Hann window, {short(one.resolution, 3)} Hz of resolution"
+    least = max(spectra, key=lambda each: each.lacks)
+    if least.lacks:
+        told += (
+            f"; lacks {least.lacks:.0%} of the variance, in motion slower than {least.length:.3g} s"
+        )
     titled(made, runs, f"Spectral density of {spaced(channel)}: {told}")
     if len(runs) == 1:
         a.legend(loc="lower left")

@@ -23,8 +23,8 @@ from trsim.analyse.cases import (
 from trsim.analyse.cases import needed as of_needed
 from trsim.analyse.fluctuation import shows
 from trsim.errors import FileError, UsageError
-from trsim.report import case_bars, envelopes, maps, style
-from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
+from trsim.report import case_bars, case_table, envelopes, maps, style
+from trsim.report.asked import Asked, Found, Value, file_name, nothing
 from trsim.report.asked import words as parted_words
 from trsim.report.diagrams import bifurcation
 from trsim.report.display import Shown, compared
@@ -112,21 +112,13 @@ def outputs(study: Any, one: Shown, of: list[Numbers], over: str | None, folder:
     """sweep.csv, and a figure of each number over what was swept."""
     found, names = nothing(), [case.name for case in study.cases]
     keys = drawn_over(study, over)
-    units_of = {each.word: one.told(each.unit) for each in of}
     found.values.extend(
         Value(n, each.word, each.values[n] * factor, np.nan, text)
         for each in of
-        for factor, text in [units_of[each.word]]
+        for factor, text in [one.told(each.unit)]
         for n in names
     )
-    titles = ["case", "status", *(f"{k} [{study.units.get(k, '-')}]" for k in study.keys)]
-    titles += [f"{each.word} [{units_of[each.word][1]}]" for each in of]
-    rows = [
-        (case.name, case.status, *(case.values.get(key, "") for key in study.keys),
-         *(each.values[case.name] * units_of[each.word][0] for each in of))
-        for case in study.cases
-    ]  # fmt: skip
-    found.files.append(table(folder / "sweep.csv", titles, rows))
+    found.files.append(case_table.written(folder / "sweep.csv", study, one, of))
     for each in of:
         found.lines.extend(reasons(each.why))
         y = np.array([each.values[name] for name in names])

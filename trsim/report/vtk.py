@@ -49,7 +49,7 @@ def write(run: Run, target: Path) -> tuple[int, tuple[str, ...]]:
 
     Raises FileError, and UsageError where the run holds the place of no body.
     """
-    moved = motion(run)
+    moved = motion(run, even=True)  # ParaView plays one frame after the other
     every = list(parts(run, moved))
     folder = target.with_name(f"{target.stem}_frames")
     width, entries = len(str(len(moved.time) - 1)), []

@@ -71,14 +71,17 @@ class Motion:
         return self.drawn.bodies[body] + own
 
 
-def motion(run: Run) -> Motion:
-    """The frames of a run.  Raises UsageError where nothing can be drawn."""
+def motion(run: Run, even: bool = False) -> Motion:
+    """The frames of a run; even: those of `even_frames`.
+
+    Raises UsageError where nothing can be drawn.
+    """
     drawn = drawing(run)
     if run.rows == 0 or not (drawn.bodies or drawn.bars):
         what = "it has no rows" if run.rows == 0 else "it holds the position of no body"
         raise UsageError(f"{run.path}: nothing to animate: {what}", "Record positions of bodies.")
     time = run.time
-    rows = frames(time)
+    rows = even_frames(time) if even else frames(time)
     places = {name: run.channel(f"{name}.position") for name in drawn.bodies}
     nodes = {name: np.stack([run.channel(f"{name}.node{k}.position")[rows]
                              for k in range(len(line))], axis=1)
@@ -115,7 +118,25 @@ def frames(time: Array) -> NDArray[np.int64]:
     """Rows of the frames: at most FRAMES of them, evenly in time, the first and the last."""
     if len(time) <= FRAMES:
         return np.arange(len(time))
-    wanted = np.linspace(time[0], time[-1], FRAMES)
+    return nearest(time, np.linspace(time[0], time[-1], FRAMES))
+
+
+def even_frames(time: Array) -> NDArray[np.int64]:
+    """The same where nothing makes up for frames that are now a row apart, now two: every k-th row.
+
+    Rows at events stand between the others, and are no frames.
+    """
+    steps = np.diff(time)
+    if len(time) <= FRAMES or not steps.any():
+        return frames(time)
+    every, span = float(np.median(steps[steps > 0.0])), float(time[-1] - time[0])
+    k = max(1.0, np.ceil(span / every / (FRAMES - 1) - 1e-9))
+    wanted = np.arange(time[0], time[-1], k * every)
+    return nearest(time, np.append(wanted, time[-1]))
+
+
+def nearest(time: Array, wanted: Array) -> NDArray[np.int64]:
+    """The rows that are nearest to some times, each once."""
     after = np.clip(np.searchsorted(time, wanted), 1, len(time) - 1)
     before = wanted - time[after - 1] < time[after] - wanted
     return np.unique(np.where(before, after - 1, after)).astype(np.int64)
