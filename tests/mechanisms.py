@@ -1,6 +1,6 @@
 """Mechanisms with a known answer.  Each returns (scenario text, exact solution)."""
 
-from math import atan, cos, sqrt
+from math import atan, cos, pi, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -179,3 +179,21 @@ forces:
 solver: {{end: {bounces * period!r}, tolerance: {tolerance}}}
 """
     return text, (v / g, contact, period)
+
+
+def sealed_door(speed=0.5):
+    """A door that slides 6 mm onto a seal, which is linear: it is pressed for half a period, s."""
+    text = f"""
+planar: false
+bodies:
+  door: {{mass: 20, inertia: [2, 2, 4], at: [0.4, 0, 1], velocity: [0, {-speed}, 0]}}
+joints:
+  rail: {{type: prismatic, bodies: [ground, door], at: [0.4, 0, 1], axis: [0, 1, 0]}}
+forces:
+  edge: {{type: seal, line: {{body: door, start: [0.8, 0, 0.1], end: [0.8, 0, 1.9]}},
+         against: {{body: ground, at: [0, -0.01, 0], normal: [0, 1, 0]}},
+         height: 0.004, load: 130, at: 0.004, exponent: 1}}
+solver: {{end: 0.8, tolerance: 1e-8}}
+output: {{every: 1 ms}}
+"""
+    return text, pi * sqrt(20 / (130 / 0.004 * 1.8))

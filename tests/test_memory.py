@@ -129,6 +129,13 @@ def test_zeros_have_signs(path):
         assert repr(told(of_case(own))) == repr(told(loads(json.dumps(own))))
 
 
+def test_a_named_point_has_the_signs_of_its_zeros():
+    data = case(loads(FRAMED).resolved, ("frame",), {"at": [0, 0], "angle": 0})
+    for value in (0.0, -0.0, 0.0):
+        own = case(data, ("points", "hook", "at", 1), value)
+        assert repr(told(of_case(own))) == repr(told(loads(json.dumps(own))))
+
+
 def test_what_is_known_does_not_grow_for_ever(monkeypatch):
     monkeypatch.setattr(memory, "MOST", 20)
     data = loads(FRAMED).resolved

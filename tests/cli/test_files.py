@@ -91,6 +91,15 @@ def test_run_of_a_result_is_identical(scenario, trsim, answer):
     assert document["scenarios"][0]["title"] == "Löwe"
 
 
+def test_a_damaged_result_is_not_what_it_says(scenario, trsim, answer):
+    trsim("run", "crank.yaml")
+    with h5py.File("runs/crank.h5", "r+") as file:
+        file["stroke"][5] += 1e-9
+    code, document = answer("run", "runs/crank.h5", "-o", "again.h5")
+    assert code == 0
+    assert "identical" not in document["runs"][0]
+
+
 # --- show ------------------------------------------------------------------------------------
 
 

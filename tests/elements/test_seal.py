@@ -10,6 +10,7 @@ from trsim.errors import ScenarioError
 from trsim.solve.diagnose.doubts import doubts
 from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, ONSET, SEPARATION
 
+from ..mechanisms import sealed_door
 from ..runs import built, energy_error, run
 from .bench import TWO_BODIES, bench, check_action_is_reaction, check_gradient, check_power
 
@@ -67,26 +68,11 @@ def test_many_springs_are_the_integral():
     assert off[3] < off[2] < off[0]
 
 
-DOOR = """
-planar: false
-bodies:
-  door: {mass: 20, inertia: [2, 2, 4], at: [0.4, 0, 1], velocity: [0, -0.5, 0]}
-joints:
-  rail: {type: prismatic, bodies: [ground, door], at: [0.4, 0, 1], axis: [0, 1, 0]}
-forces:
-  edge: {type: seal, line: {body: door, start: [0.8, 0, 0.1], end: [0.8, 0, 1.9]},
-         against: {body: ground, at: [0, -0.01, 0], normal: [0, 1, 0]},
-         height: 0.004, load: 130, at: 0.004, exponent: EXP}
-solver: {end: 0.8, tolerance: 1e-8}
-output: {every: 1 ms}
-"""
-
-
 def test_a_door_springs_back_from_its_seal():
     """It meets the seal after 6 mm, and with n = 1 stays for half a period."""
-    got = run(DOOR.replace("EXP", "1"))
+    text, half = sealed_door()
+    got = run(text)
     k = 130 / 0.004 * 1.8
-    half = np.pi * sqrt(20 / k)
     times = [got.events[got.events[:, EVENT_KIND] == kind][:, EVENT_TIME]
              for kind in (ONSET, SEPARATION)]  # fmt: skip
     assert times[0] == pytest.approx([0.006 / 0.5], abs=1e-9)
@@ -190,6 +176,6 @@ def test_what_is_refused(wrong, what):
 
 
 def test_a_seal_pressed_through_its_plane_is_told():
-    got = run(DOOR.replace("EXP", "1").replace("velocity: [0, -0.5, 0]", "velocity: [0, -5, 0]"))
+    got = run(sealed_door(speed=5.0)[0])
     words = doubts(got.scenario, got.mechanism, got.outcome)
     assert any("went through the plane" in one for one in words)

@@ -136,4 +136,8 @@ def test_skipped():
     assert "friction" not in left_out(p1_slider_crank(friction=True))
     assert "play of C: clearance 0" in left_out(p1_slider_crank(clearance="0 mm"))
     assert "`sweep`" in left_out(slider_crank("true", "sweep: {solver.end: [1, 2]}"))
-    assert "nothing is factorised" in left_out("bodies: {a: {mass: 1, inertia: 1}}\n" + END)
+    free = "bodies: {a: {mass: 1, inertia: 1}}\n"
+    assert "nothing is factorised" in left_out(free + END)
+    assert "a run" not in left_out(free + END)
+    endless = scenario(free)
+    assert "a run: `solver.end` is not given" in " | ".join(skipped(endless, assemble(endless)))

@@ -47,6 +47,13 @@ def test_what_is_no_line(change):
     assert entry_of(line) is None
 
 
+@pytest.mark.parametrize("half", [rb"\uD800", rb"\udfff", b"\xed\xa0\x80"], ids=repr)
+def test_half_of_a_pair_however_it_is_written(half):
+    line = json.dumps(ENDED._asdict() | {"reason": "HALF"}).encode()
+    assert entry_of(line) is not None
+    assert entry_of(line.replace(b"HALF", half)) is None
+
+
 def test_letters_of_any_script():
     told = ENDED._replace(reason="\u00e4 \u6469 \U0001f527")
     assert entry_of(json.dumps(told._asdict()).encode()) == told

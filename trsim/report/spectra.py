@@ -87,10 +87,10 @@ def figure(runs: list[Shown], spectra: list[Spectrum], channel: str) -> Any:
     a.set_ylabel(f"{spaced(channel)}\n({per_root(unit)})")
     one = spectra[0]
     told = f"{one.segments} segments, Hann window, {short(one.resolution, 3)} Hz of resolution"
-    least = max(spectra, key=lambda each: each.lacks)
-    if least.lacks:
+    worst = max(spectra, key=lambda each: each.lacks)
+    if worst.lacks:
         told += (
-            f"; lacks {least.lacks:.0%} of the variance, in motion slower than {least.length:.3g} s"
+            f"; lacks {worst.lacks:.0%} of the variance, in motion slower than {worst.length:.3g} s"
         )
     titled(made, runs, f"Spectral density of {spaced(channel)}: {told}")
     if len(runs) == 1:

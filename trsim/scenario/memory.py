@@ -54,7 +54,7 @@ class Memory:
                 value = parameters[word]
                 found += word, repr(value), getattr(value, "unit", None)
             if (point := points.get(names.get(word, word))) is not None:
-                found += word, point, repr(point.frame)
+                found += word, repr(point.frame)  # nothing else of it is asked
         means = (repr(scope.frame), *scope.names.items()) if scope else ()
         return section, text, means, *found
 

@@ -101,7 +101,7 @@ def _lines(path: Path) -> list[bytes]:
 def entry_of(line: bytes) -> Entry | None:
     """The entry in a line; None of a line that holds something else, whatever it is."""
     try:
-        told = json.loads(line)
+        told = json.loads(line.decode())
     except (ValueError, RecursionError):
         return None
     if not isinstance(told, dict) or told.keys() | {"kept"} != KINDS.keys():
@@ -118,7 +118,7 @@ def entry_of(line: bytes) -> Entry | None:
             return None
     if told["status"] not in STATUSES and told["status"] not in FAILED:
         return None
-    if b"\\ud" in line and not _is_text(told):
+    if b"\\ud" in line.lower() and not _is_text(told):
         return None
     return Entry(**told)
 
