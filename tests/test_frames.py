@@ -123,7 +123,7 @@ def test_parameters_sets_and_sweeps(tmp_path):
     assert len({case.digest for case in found.cases}) == 4
     last = found.scenario(found.cases[-1])
     assert last.frame.angle == pytest.approx(pi / 60)
-    data, memory = loads(text).resolved, Memory.of(loads(text).resolved)
+    data, memory = loads(text).resolved, Memory()
     assert valid(data, memory)
     assert valid({**data, "frame": {"angle": 1}}, memory)
     places = {spec.at for key, spec in memory.made.items() if '"mass": "m"' in key[1]}

@@ -225,7 +225,7 @@ sweep:
 
 def test_what_is_known_of_a_piece_depends_on_where_it_stands():
     data = loads(TEXT).resolved
-    memory = Memory.of(data)
+    memory = Memory()
     assert valid(data, memory)
     doors = [spec for key, spec in memory.made.items() if '"inertia": [1, 2, 3]' in key[1]]
     assert sorted(door.at for door in doors) == sorted(

@@ -328,7 +328,7 @@ def test_cases_of_a_sweep_that_move_a_point(tmp_path):
         "bodies": {"b": {"mass": 1, "inertia": 1}},
         "joints": {"j": {"type": "revolute", "bodies": ["ground", "b"], "at": "p"}},
     }
-    memory = Memory.of(data)
+    memory = Memory()
     assert valid(data, memory)
     assert valid({**data, "points": {"p": {"body": "ground", "at": [2, 0]}}}, memory)
     places = {spec.at for key, spec in memory.made.items() if key[0] == "joints"}
