@@ -55,7 +55,8 @@ class Plain(io.RawIOBase):
         return len(view)
 
     def close(self) -> None:
-        self.file.close()
+        if hasattr(self, "file"):  # Python closes also what could not be opened
+            self.file.close()
         super().close()
 
 
