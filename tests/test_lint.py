@@ -180,3 +180,8 @@ def test_inertias_of_a_body_that_has_hardly_any(inertia, told):
 def test_a_bearing_that_is_loose(clearance, told):
     notes = found(("0.3 mm", clearance))
     assert any("of the bearing radius" in note for note in notes) == told
+
+
+def test_a_decimal_comma_is_told():
+    (note,) = found(("at: [0.5, 0]", "at: [0,5, 0]"))
+    assert note.startswith("joints.C.at: [0,5, 0] is a list of 3 numbers")

@@ -27,6 +27,7 @@ from trsim.errors import ScenarioError, described, known
 Node = tuple
 LONGEST = 1000  # characters
 DEEPEST = 40  # nested operations
+OF_SWEEPS = "lin(a, b, n) and log(a, b, n) are values of a sweep: `trsim sweep` takes them."
 
 _CHARACTERS = re.compile(r"[A-Za-z0-9_.,()+\-*/<>=!\s]*")
 
@@ -141,7 +142,9 @@ def parse(text: str) -> Node:
     except SyntaxError as error:
         reason = (error.msg or "").split(". Perhaps")[0]
         hint = ALLOWED
-        if re.search(r"[0-9],[0-9]", text):
+        if re.match(r"\s*(lin|log)\s*\(", text):
+            hint = OF_SWEEPS
+        elif re.search(r"[0-9],[0-9]", text):
             hint = "A decimal point is '.'"
         elif found := _WITH_UNIT.search(text):
             hint = (
@@ -187,7 +190,8 @@ def _read(tree: ast.AST, depth: int) -> Node:
 
 def _check_call(word: str, n: int) -> None:
     if word not in FUNCTIONS:
-        raise ScenarioError(f"no function named {described(word)}", known(word, FUNCTIONS))
+        hint = OF_SWEEPS if word == "lin" else known(word, FUNCTIONS)
+        raise ScenarioError(f"no function named {described(word)}", hint)
     _, fewest, most = FUNCTIONS[word]
     if not fewest <= n <= most:
         wanted = str(fewest) if fewest == most else f"{fewest} or more"

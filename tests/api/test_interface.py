@@ -385,6 +385,26 @@ def test_result_of_no_result(here):
     fails(trsim.FileError, lambda: trsim.Result("crank.yaml"), "is not a result file")
 
 
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (lambda run: trsim.Result(None), "is the name of its file, not nothing"),
+        (lambda run: trsim.Result(7), "is the name of its file, not 7"),
+        (lambda run: run[None], "name of a channel is a word, not nothing"),
+        (lambda run: run.channel(3), "name of a channel is a word, not 3"),
+        (lambda run: run.frame(None), "name of a channel is a word, not nothing"),
+        (lambda run: run.number(None), "number of a run is a word, not nothing"),
+        (lambda run: run.number("final:ball.position.y", 3), "unit is a word, not 3"),
+        (lambda run: run.plot(None), "figure is a word, not nothing"),
+        (lambda run: run.plot("ball.position.y", window=3), "window is a word, not 3"),
+        (lambda run: run.report(None), "folder has a name, not nothing"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_what_is_no_word(asked, words, drop):
+    fails(trsim.UsageError, lambda: asked(drop), words)
+
+
 # --- sweeps ----------------------------------------------------------------------------------
 
 

@@ -7,7 +7,7 @@ import pytest
 from tests.test_circles import ROOT
 from trsim.errors import UsageError
 from trsim.scenario.explain import explained
-from trsim.scenario.topics import TOPICS
+from trsim.scenario.topics import NUMBERS, TOPICS
 from trsim.statuses import STATUSES
 from trsim.units import BASE, DERIVED, unit
 
@@ -70,6 +70,14 @@ def test_a_topic_names_words_that_are_explained():
             if not code.startswith("trsim "):
                 for word in re.findall(r"[A-Za-z_]\w*", code):
                     assert known(word) or word in ("crank", "JOINT"), (topic, word)
+
+
+def test_every_number_of_a_run():
+    from trsim.analyse.outputs import KINDS
+
+    assert NUMBERS.keys() == KINDS.keys()
+    for word in KINDS:
+        assert any(f"`trsim show FILE {word}:" in page["text"] for page in known(word)["topics"])
 
 
 def test_commands_in_topics_are_there():

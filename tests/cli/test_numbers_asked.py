@@ -98,3 +98,26 @@ def test_no_number_is_said(tmp_path, trsim):
     code, out, err = trsim("show", tmp_path / "x.h5", "between:B")
     assert (code, out.split()) == (0, ["nan", "s"])
     assert "nothing to make it of" in err
+
+
+def test_rounding_of_a_conversion_is_not_printed(disc, trsim):
+    """60 deg is 1.0471975511965976 rad, and that 59.99999999999999 deg."""
+    from math import pi
+
+    from trsim.analyse.outputs import in_units
+
+    value, _ = in_units("x", (pi / 3.0, "rad"), ("deg",))
+    assert repr(value) != "60.0"
+    small.run(disc.parent / "y.h5", "drives.motor.velocity=30 deg/s", text=PENDULUM)
+    code, out, _ = trsim("show", disc.parent / "y.h5", "final:turned", "--unit", "deg")
+    assert (code, out) == (0, f"{float(out):.15g}\n")
+    assert float(out) == pytest.approx(60.0, rel=1e-7)
+
+
+def test_the_reaction_of_a_pin_with_play_in_a_plane_is_its_contact_force(tmp_path, trsim):
+    small.run(tmp_path / "x.h5")
+    words = {"peak:B.reaction": True, "peak:|B.reaction|@0..": True, "peak:B.contact_force": False}
+    for word, told in words.items():
+        code, _, err = trsim("show", tmp_path / "x.h5", word)
+        assert code == 0
+        assert ("B.contact_force is the force in that pin" in err) is told

@@ -177,6 +177,14 @@ def test_all_that_differs_is_named_or_nothing(more, told):
     assert labels[0] == told
 
 
+def test_what_is_written_otherwise_does_not_differ():
+    one = {"bodies": {"a": {"mass": "1kg", "at": [0, "200 mm"]}}, "solver": {"end": 1}}
+    same = {"bodies": {"a": {"mass": 1.0, "at": [0.0, 0.2]}}, "solver": {"end": "1 s"}}
+    other = {"bodies": {"a": {"mass": "2 kg", "at": [0, "0.2 m"]}}, "solver": {"end": "1000 ms"}}
+    assert differences([one, same]) == ["", ""]
+    assert differences([one, other]) == ["mass at a 1kg", "mass at a 2 kg"]
+
+
 def test_a_law_is_named_unless_it_comes_with_the_clearance():
     law = [{"clearance": 1, "contact": "a"}, {"clearance": 2, "contact": "b"}]
     assert (

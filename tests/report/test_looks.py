@@ -10,13 +10,15 @@ import pytest
 from tests import small
 from tests.report.test_figures import drawn
 from tests.report.test_plots import DOOR
-from trsim.errors import FileError, UsageError
+from trsim.errors import FileError, ScenarioError, UsageError
 from trsim.report import analysed, report, style
 from trsim.report.asked import Asked
 from trsim.report.display import compared, display_units
 from trsim.report.figures import motion
 from trsim.report.looks import Looks, chosen, inches
 from trsim.report.style import look
+from trsim.scenario.shown import MEANT, UNITS
+from trsim.scenario.shown import report as section
 from trsim.store.read import read
 
 
@@ -37,11 +39,24 @@ def test_units_of_an_option():
         "N": (pytest.approx(1e-3), "kN"),
     }
     for text, what in (("speed", "no units"), ("sped: rpm", "unknown key 'sped'"),
-                       ("a:", "no units"),
+                       ("a:", "no units"), ("speed:", "no units"), ("velocity: m/s", "'velocity'"),
                        ("speed: N", "no unit of speed"), ("speed: rmp", "unknown unit"),
                        ("angle: deg, angle: rad", "asked for twice")):  # fmt: skip
         with pytest.raises(UsageError, match=what):
             chosen((text,))
+
+
+@pytest.mark.parametrize("word", MEANT)
+def test_other_words_for_a_kind(word):
+    """The option and the section of a scenario say which one is meant."""
+    with pytest.raises(UsageError) as error:
+        chosen((f"{word}: m",))
+    assert f"Did you mean '{MEANT[word]}'?" in error.value.hint
+    with pytest.raises(ScenarioError) as error:
+        section({"units": {word: "m"}})
+    assert f"Did you mean '{MEANT[word]}'?" in error.value.hint
+    assert error.value.path == ("units", word)
+    assert MEANT[word] in UNITS and word not in UNITS
 
 
 def test_units_in_figures_and_their_tables(door, tmp_path):

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from trsim.sweeps.ledger import Entry, entries, entry_of
+from trsim.sweeps.ledger import Entry, entries, entry_of, line_of
 
 ENDED = Entry("a", "d", "e", "done", "", 1, "c", 10, 20, 3.0, 0.5, {"time": 1.0})
 
@@ -57,3 +57,23 @@ def test_half_of_a_pair_however_it_is_written(half):
 def test_letters_of_any_script():
     told = ENDED._replace(reason="\u00e4 \u6469 \U0001f527")
     assert entry_of(json.dumps(told._asdict()).encode()) == told
+
+
+def test_a_line_that_was_changed_anywhere_is_none():
+    line = line_of(ENDED._replace(content="0123abcd", summary={"time": 1.0, "steps": 12}))
+    assert entry_of(line) is not None
+    for k in range(len(line)):
+        for bit in range(8):
+            changed = bytearray(line)
+            changed[k] ^= 1 << bit
+            assert entry_of(bytes(changed)) is None, bytes(changed)
+
+
+def test_words_of_a_check_sum_in_a_reason():
+    told = ENDED._replace(reason='a line with , "check": 1}')
+    assert entry_of(line_of(told)) == told
+
+
+def test_lines_of_older_versions_have_no_check_sum(tmp_path):
+    written(tmp_path / "ledger.jsonl", ENDED)
+    assert entries(tmp_path) == {"a": ENDED}

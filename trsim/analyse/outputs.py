@@ -44,6 +44,8 @@ def scalar(run: Run, word: str) -> Number:
 
     Raises UsageError for a word that makes no sense, or names what the run does not have.
     """
+    if not isinstance(word, str):
+        raise UsageError(f"a number of a run is a word, not {described(word)}", FORM)
     if (kept := run.kept(word)) is not None:
         return kept
     check_word(word, run)

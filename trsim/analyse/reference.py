@@ -12,7 +12,7 @@ import numpy as np
 from trsim.analyse.compare import Curve
 from trsim.arrays import Array
 from trsim.errors import FileError, ScenarioError, UsageError, known, unreadable
-from trsim.scenario.table import Line, Table, lines, number
+from trsim.scenario.table import Line, Table, between, lines, number
 from trsim.units import fits, titled, unit
 
 
@@ -55,8 +55,11 @@ def _names(table: Table, path: Path) -> list[str]:
     """The names of the columns, each once."""
     if table.titles is None or len(table.rows) < 2 or len(table.titles.cells) < 2:
         what = f"{path} has no table of at least two columns and two rows below their names"
-        raise FileError(what, "The first line names the columns: `time [s],stroke [mm]`.",
-                        file=str(path))  # fmt: skip
+        hint = "The first line names the columns: `time [s],stroke [mm]`."
+        first = table.rows[0].text if table.rows else ""
+        if ";" in first or "\t" in first:
+            hint = between(first)
+        raise FileError(what, hint, file=str(path))
     names = [_name(cell) for cell in table.titles.cells]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:

@@ -6,7 +6,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trsim.errors import UsageError, known
+from trsim.errors import UsageError, described, known
 
 if TYPE_CHECKING:
     import pandas
@@ -27,9 +27,12 @@ class Result:
     """
 
     def __init__(self, file: str | os.PathLike, summary: Mapping[str, Any] | None = None) -> None:
-        """Raises FileError where the file is no result file that can be read."""
+        """Raises FileError where the file is no result file that can be read; UsageError."""
         from trsim.store.read import read
 
+        if not isinstance(file, str | os.PathLike):
+            what = f"a result is the name of its file, not {described(file)}"
+            raise UsageError(what, 'Write for example trsim.Result("crank.h5").')
         self.file = Path(file)
         self.run: Run = read(self.file)
         self.summary: dict[str, Any] = dict(self.run.summary if summary is None else summary)
@@ -96,11 +99,12 @@ class Result:
 
         "B.force.x" is a component, "|B.force|" the magnitude.  Raises UsageError.
         """
+        check_words("the name of a channel", name)
         return self.run.channel(name)
 
     def channel(self, name: str, unit: str = "") -> "NDArray[Any]":
         """The same in a unit of one's own: "kN"."""
-        return self.run.channel(name) * factor(self.run.unit(name), unit)
+        return self[name] * factor(self.run.unit(name), unit)
 
     def frame(self, *names: str, units: Mapping[str, str] | None = None) -> "pandas.DataFrame":
         """Channels side by side over time; all of them where none is named.
@@ -191,12 +195,16 @@ class Result:
         """
         from trsim.api.pictures import pictures
 
+        check_words("a figure", *words)
+        check_words("a window", window)
         return pictures([self.file], words, window, overlay)
 
     def report(self, folder: str | os.PathLike) -> list[Path]:
         """Write all figures and tables of `trsim report` into a folder; the files."""
         from trsim.report import report
 
+        if not isinstance(folder, str | os.PathLike):
+            raise UsageError(f"a folder has a name, not {described(folder)}")
         return report(self.file, folder)
 
     def _repr_html_(self) -> str:
@@ -215,11 +223,19 @@ class Result:
         return f"<p>{head}</p><p>{size}</p>{said}<table>{''.join(rows)}</table>{tail}"
 
 
+def check_words(what: str, *words: Any) -> None:
+    """Check that words are text.  Raises UsageError."""
+    for word in words:
+        if not isinstance(word, str):
+            raise UsageError(f"{what} is a word, not {described(word)}")
+
+
 def factor(si: str, wanted: str) -> float:
     """What a number in an SI unit is multiplied by.  Raises UsageError for another dimension."""
     from trsim.errors import ScenarioError
     from trsim.units import fits, unit
 
+    check_words("a unit", wanted)
     if not wanted:
         return 1.0
     try:

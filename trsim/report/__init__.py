@@ -39,13 +39,15 @@ def report(
     from trsim.report import figures, index, style, tables
     from trsim.report.display import compared
     from trsim.store.read import read
+    from trsim.store.target import together
 
     given = [paths] if isinstance(paths, str | PathLike) else list(paths)
     check_given(given)
     runs = compared([read(path) for path in given], chosen(looks.units))
     with style.asked(looks) as sheet, made(folder) as folder:
-        drawn = figures.draw(runs, folder)
-        written = [*drawn, *tables.draw(runs, folder)]
+        with together():
+            drawn = figures.draw(runs, folder)
+            written = [*drawn, *tables.draw(runs, folder)]
         loads = [load for shown in runs for load in tables.peak_loads(shown)]
         return [*written, index.write(folder, runs, loads, drawn, sheet.shots)]
 

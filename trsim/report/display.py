@@ -7,7 +7,7 @@ from trsim.arrays import Array
 from trsim.errors import ScenarioError
 from trsim.scenario.shown import replaced
 from trsim.store.read import Run
-from trsim.units import unit
+from trsim.units import quantity, unit
 
 DEFAULT = {"angle": "deg", "length": "mm"}
 ASIDE = ("title", "report", "limits", "cases", "sweep")  # of a scenario; a run is the same without
@@ -138,10 +138,23 @@ def differences(scenarios: list[dict[str, Any]]) -> list[str]:
     where these are too many or too long for a label."""
     flat = [dict(_flat({k: v for k, v in s.items() if k not in ASIDE})) for s in scenarios]
     keys = dict.fromkeys(key for one in flat for key in one)
-    differing = [key for key in keys if len({repr(one.get(key)) for one in flat}) > 1]
+    differing = [key for key in keys if len({repr(_meant(one.get(key))) for one in flat}) > 1]
     major = [key for key in differing if key[-1] not in MINOR]
     told = [key for key in differing if key in major or not _implied(key, major, flat)]
     return [_label(one, told) for one in flat]
+
+
+def _meant(value: Any) -> Any:
+    """A value as it counts, however it was written: 1kg, 1 kg and 1 are the same mass."""
+    if isinstance(value, list):
+        return [_meant(one) for one in value]
+    if isinstance(value, str):
+        try:
+            found = quantity(value)
+        except ScenarioError:
+            return value
+        return value if found is None else found[0]
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
 def _implied(key: Entry, major: list[Entry], flat: list[dict[Entry, Any]]) -> bool:

@@ -6,6 +6,7 @@
 from typing import NamedTuple
 
 from trsim.errors import ScenarioError, UsageError, described
+from trsim.scenario.shown import UNITS as KINDS
 from trsim.scenario.shown import replaced
 from trsim.units import quantity, unit
 
@@ -33,7 +34,10 @@ def chosen(texts: tuple[str, ...]) -> dict[str, tuple[float, str]]:
     for pair in (one.strip() for text in texts for one in text.strip(" {}").split(",")):
         key, colon, name = (part.strip() for part in pair.partition(":"))
         if not colon or not name:
-            raise UsageError(f"no units: {described(pair)}", UNITS)
+            hint = UNITS
+            if key in KINDS:
+                hint = f"Say which: {key}: {KINDS[key][0]}."
+            raise UsageError(f"no units: {described(pair)}", hint)
         try:
             si = replaced(key, name)
         except ScenarioError as error:

@@ -13,7 +13,7 @@ from trsim.scenario.load import unit_of
 from trsim.scenario.meanings import description, inside, meanings
 from trsim.scenario.scenario import Scenario
 from trsim.scenario.schema import schema
-from trsim.scenario.topics import SWEEP, TOPICS
+from trsim.scenario.topics import NUMBERS, SWEEP, TOPICS
 from trsim.statuses import STATUSES
 from trsim.units import BASE, DERIVED, kind, si, unit
 
@@ -96,7 +96,11 @@ def _words(every: dict[str, list[Page]]) -> list[str]:
 
 def _topics() -> Iterator[Page]:
     ends = {word: f"A run that ended so: {text}." for word, text in STATUSES.items()}
-    return ({"word": word, "text": text} for word, text in {**ends, **TOPICS}.items())
+    pages = {**ends, **TOPICS}
+    for word, (of, text) in NUMBERS.items():
+        told = f"`trsim show FILE {word}:{of}` prints {text}; so do `report --table` and `sweep`."
+        pages[word] = f"{pages[word]} As a number of a run: {told}" if word in pages else told
+    return ({"word": word, "text": text} for word, text in pages.items())
 
 
 def units() -> Iterator[Page]:

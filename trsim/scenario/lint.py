@@ -16,6 +16,7 @@ from trsim.laws.contact import (
     hertz_peak,
 )
 from trsim.scenario import plausible
+from trsim.scenario.commas import commas
 from trsim.scenario.methods import METHODS
 from trsim.scenario.slender import slender
 from trsim.scenario.strangers import strangers
@@ -38,7 +39,7 @@ def lint(scenario: Any) -> tuple[str, ...]:
         *(_inertias, partial(_sizes, points), partial(plausible.densities, points)),
         *(plausible.moduli, plausible.coefficients),
         *(_conformity, _restitutions, _speeds, _stops, _fixed_step, _ignored_step, _ground, _rows),
-        *(_many_turns, slender, strangers, _unused),
+        *(_many_turns, slender, strangers, commas, _unused),
     )
     found = (message for check in checks for message in check(scenario))
     return tuple(dict.fromkeys(_as_written(scenario, message) for message in found))

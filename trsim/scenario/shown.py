@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from trsim.errors import ScenarioError, check_keys, described
+from trsim.errors import ScenarioError, check_keys, described, known
 from trsim.units import unit
 
 # what a choice replaces: the one that has the dimension of the unit that is chosen
@@ -21,6 +21,12 @@ UNITS: dict[str, tuple[str, ...]] = {
     "power": ("W",),
     "frequency": ("1/s",),
 }
+# other words for these kinds, and the one that is meant
+MEANT = {
+    "velocity": "speed", "rate": "speed", "angular_velocity": "angular_speed", "rpm": "speed",
+    "moment": "torque", "work": "energy", "distance": "length", "displacement": "length",
+    "position": "length", "stroke": "length", "rotation": "angle", "load": "force",
+}  # fmt: skip
 
 
 def report(given: dict[str, Any]) -> dict[str, Any]:
@@ -33,7 +39,8 @@ def report(given: dict[str, Any]) -> dict[str, Any]:
         what = f"must be a mapping, got {described(chosen)}"
         raise ScenarioError(what, "For example `{angle: deg, length: mm}`.", ("units",))
     for key, text in chosen.items():
-        check_keys([key], UNITS, "units")
+        if key not in MEANT:
+            check_keys([key], UNITS, "units")
         if not isinstance(text, str):
             what = f"must be a unit, got {described(text)}"
             raise ScenarioError(what, f"For example {UNITS[key][0]}.", ("units", key))
@@ -49,6 +56,8 @@ def replaced(key: str, text: str) -> str:
 
     Raises ScenarioError for what is no unit of that kind.
     """
+    if key in MEANT:
+        raise ScenarioError(f"unknown key {described(key)}", known(key, UNITS, MEANT[key]))
     check_keys([key], UNITS)
     dimension = unit(text)[1]
     for si in UNITS[key]:

@@ -127,6 +127,16 @@ def chosen(table: Table, columns: Any) -> Table:
     return Table(table.file, of(table.titles), [of(line) for line in table.rows])
 
 
+def between(line: str) -> str:
+    """The hint on a line that is parted otherwise than by commas, as spreadsheets of some languages
+    save it."""
+    if ";" not in line and "\t" not in line:
+        return "Columns are separated by commas."
+    mark = "semicolons" if ";" in line else "tabs"
+    decimal = " and decimal commas" * bool(re.search(r"[0-9],[0-9]", line))
+    return f"It has {mark}{decimal}: save it with commas between columns and decimal points."
+
+
 def _wrong(table: Table, line: Line, what: str, hint: str) -> ScenarioError:
     """What is wrong with a line of titles."""
     found = f"row {line.number} of {table.file}{what}"
@@ -135,7 +145,7 @@ def _wrong(table: Table, line: Line, what: str, hint: str) -> ScenarioError:
 
 def _no_row(file: str, at: int, line: str, cells: list[str]) -> ScenarioError:
     """What is wrong with a line of a CSV file, and in which column."""
-    what, hint = f"row {at} of {file} is not two numbers", "Columns are separated by commas."
+    what, hint = f"row {at} of {file} is not two numbers", between(line)
     column = next((k for k, cell in enumerate(cells) if number(cell) is None), 0)
     if len(cells) == 2:
         what = f"row {at} of {file}: {described(cells[column].strip())} in column {column + 1}"

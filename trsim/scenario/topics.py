@@ -184,6 +184,39 @@ TOPICS = {
         "report --lyapunov` show what comes after."
     ),
 }
+# numbers of a run: what comes before the colon (trsim/analyse/outputs.py)
+NUMBERS = {
+    "peak": (
+        "CHANNEL",
+        "the largest value in the motion, also between rows, with its sign; that of"
+        " a vector is that of its magnitude, and peak:|CHANNEL| is the largest size",
+    ),
+    "least": ("CHANNEL", "the smallest value in the motion, also between rows"),
+    "range": ("CHANNEL", "largest less smallest value"),
+    "mean": ("CHANNEL", "the mean of the rows"),
+    "rms": ("CHANNEL", "the root of the mean square of the rows"),
+    "std": ("CHANNEL", "the standard deviation of the rows"),
+    "fluctuation": ("CHANNEL", "the rms of what is faster than 10 ms"),
+    "final": ("CHANNEL", "the value in the last row"),
+    "dispersion": (
+        "SECTION",
+        "how far the points of a Poincare section are spread: the root of the"
+        " sum of the variances of x and y",
+    ),
+    "points": ("SECTION", "the number of points of a Poincare section"),
+    "flight": ("JOINT", "the share of the time in which a pin with play touches nothing"),
+    "contact": ("JOINT", "the share of the time in which a pin with play is in contact"),
+    "following": (
+        "JOINT",
+        "the share of the time in which it stays in contact and is pressed on"
+        " again: contacts with several maxima",
+    ),
+    "impacts": ("JOINT", "the number of touches with one maximum of the penetration"),
+    "onsets": ("JOINT", "the number of touches"),
+    "between": ("JOINT", "the mean time from one touch to the next, s"),
+    "summary": ("KEY", "a number of the summary of the run: summary:contacts.B.peak_force"),
+    "solver": ("KEY", "a number that the solver tells: solver:steps"),
+}
 SWEEP = (  # keys of `sweep` that are no path: word, what it may be, meaning
     ("method", "grid | zip | latin_hypercube | monte_carlo | sobol", "how the values are combined: "
      "grid, all combinations; zip, side by side; the others draw `samples` from distributions"),

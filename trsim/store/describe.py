@@ -21,6 +21,9 @@ from trsim.store.read import FORMAT, VERSION, Part
 from trsim.version import __version__
 
 PACKAGES = ("numpy", "numba", "llvmlite", "scipy", "h5py", "pydantic")  # have a part in results
+NO_ROOM = re.compile(
+    r"(?i)memory allocation failed|can't allocate|unable to allocate|out of memory"
+)
 CPU = "integration_cpu"  # differs from run to run: kept apart from the statistics
 GROUPS = ("steps", "events", "peaks", "summary", "solver", "scenario", "mechanism", "provenance")
 
@@ -240,6 +243,8 @@ def stamp(date: float) -> str:
 def cause(error: BaseException) -> str:
     """The part of an HDF5 message that names what the system said."""
     text = str(error)
+    if NO_ROOM.search(text):
+        return "out of memory"
     found = re.search(r"error message = '([^']*)'", text)
     reason = found[1] if found else getattr(error, "strerror", None) or text
     return reason.splitlines()[0][:200] if reason else type(error).__name__

@@ -2,11 +2,13 @@
 
 A line is written when its case has ended, and none is ever changed: of several the last counts.
 With shards each writes lines of its own, ledger-1of3.jsonl.  A line cut short by a dead process
-is left out; the result file it was about is found by what the file says of itself.
+is left out; the result file it was about is found by what the file says of itself.  Every line
+ends with a check sum of itself (crc32): one that was changed is left out too.
 """
 
 import json
 import os
+import zlib
 from collections import Counter
 from collections.abc import Iterable
 from contextlib import suppress
@@ -24,6 +26,7 @@ FAILED = (*AGAIN, REFUSED, *ILL)
 LARGEST = 2**62  # of a number in a line
 NUMBER = (int, float)
 WORD = (str, int, float, type(None))  # of the summary in a line
+CHECK = b', "check": '  # before the check sum at the end of a line
 
 
 class Entry(NamedTuple):
@@ -65,7 +68,7 @@ class Ledger:
             self.file.write(b"\n")
 
     def add(self, entry: Entry) -> None:
-        self.file.write(json.dumps(entry._asdict()).encode() + b"\n")
+        self.file.write(line_of(entry) + b"\n")
         self.file.flush()
 
     def close(self) -> None:
@@ -98,10 +101,29 @@ def _lines(path: Path) -> list[bytes]:
         raise FileError(f"{path}: {error.strerror}", file=str(path)) from None
 
 
+def line_of(entry: Entry) -> bytes:
+    """The line of an entry."""
+    told = json.dumps(entry._asdict()).encode()
+    return b"%s%s%d}" % (told[:-1], CHECK, zlib.crc32(told))
+
+
+def _checked(line: bytes) -> bytes | None:
+    """A line without its check sum; None where that is another one.  Lines of older versions have
+    none."""
+    told, mark, check = line.rpartition(CHECK)
+    if not mark:
+        return line
+    whole = told + b"}"
+    return whole if check == b"%d}" % zlib.crc32(whole) else None
+
+
 def entry_of(line: bytes) -> Entry | None:
     """The entry in a line; None of a line that holds something else, whatever it is."""
+    checked = _checked(line)
+    if checked is None:
+        return None
     try:
-        told = json.loads(line.decode())
+        told = json.loads(checked.decode())
     except (ValueError, RecursionError):
         return None
     if not isinstance(told, dict) or told.keys() | {"kept"} != KINDS.keys():
