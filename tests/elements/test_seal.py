@@ -123,6 +123,37 @@ solver: {{end: 0.15, tolerance: 1e-8}}
     assert got["under.friction_force"][:-1] == pytest.approx(mu * N, rel=1e-9)
 
 
+@pytest.mark.parametrize("pivot", [0.0, 0.13, 0.5, 0.77])
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+def test_a_strip_that_turns_about_one_of_its_points(pivot, method):
+    """Each side of length a rubs with a moment mu q (a^2/2 - w^2/6), w = v_1/omega, and slower than
+    v_1 all along with mu q a^3/(3 w).  It is slowed from 3 rad/s, where w is 1/90 of the strip."""
+    mu, q, full, length, inertia = 0.4, 30.0, 0.02, 0.6, 0.2
+    text = f"""
+planar: false
+bodies: {{strip: {{mass: 1, inertia: [1, 1, {inertia}], at: [0, 0, 0],
+                 angular_velocity: [0, 0, 3]}}}}
+joints: {{pin: {{type: revolute, bodies: [ground, strip], at: [0, 0, 0]}}}}
+forces:
+  under: {{type: seal, line: {{body: strip, start: [{-pivot * length}, 0, 0],
+                             end: [{(1 - pivot) * length}, 0, 0]}},
+          against: {{body: ground, at: [0, 0, 0], normal: [0, 0, 1]}}, height: 0.004,
+          load: {q}, at: 0.004, friction: {mu}, full_from: {full}}}
+solver: {{method: {method}, end: 1, tolerance: 1e-8}}
+"""
+    got = run(text)
+    omega = got["strip.angular_velocity"][:, 2]
+    w = full / np.maximum(omega, 1e-100)
+    moment = sum(
+        np.where(w < a, a**2 / 2 - w**2 / 6, a**3 / (3 * w))
+        for a in (pivot * length, (1 - pivot) * length)
+    )
+    assert got["strip.angular_acceleration"][:, 2] * inertia == pytest.approx(
+        -mu * q * moment, abs=1e-6 * mu * q * length**2
+    )
+    assert omega[-1] < 0.03 < omega[0]
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_no_touch_of_either_end_is_passed_over(seed):
     """A spinning bar with a seal along it, beside a plane: each end touches once a turn."""

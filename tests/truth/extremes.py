@@ -3,7 +3,8 @@
 Those are many (a fiftieth of a turn, all crossings from both sides), and hold on one side: no
 stored extreme is nearer than the largest of them.  On the other side it is not further than the
 polynomial through the ends around it goes, what one of lower order says otherwise, and 1e-5 of the
-range, which is what these know.  Allowed is
+range, which is what these know.  What goes further is compared with the reference at that very
+time: a force may have a spike between two ends.  Allowed is
 what is allowed at the rows, and what a small change of the start makes of the extreme itself.
 Forces that the run calls chance are not judged.
 """
@@ -61,6 +62,11 @@ def beyond(
                 ends = max(of(v).max() for _, v in parts)
                 more = share * abs(max(two) - ends) / APART if two else 0.0
                 ratio, want = off(got, [(x, of(v)) for x, v in parts], allowed + more)
+                if ratio > 1.0 and got > want:  # a spike between two ends
+                    at = t.there(when / scene.unit((0, 0, 1))).get(name)
+                    if at is not None and len(at):
+                        want = max(want, float(of(at @ Q.T).max()))
+                        ratio = min(ratio, max(got - want, 0.0) / (allowed + more))
             yield ratio, f"{what}, {got:.8g} at {when:.6g} for {want:.8g}"
 
 

@@ -494,6 +494,8 @@ class Truth:
     smooth: list[Smooth] | None = None  # between the rows, for extremes
     # the same of a run that began a little apart, made when it is asked for
     beside: Callable[[], list[Smooth] | None] = lambda: None
+    # channels at any time, and as long before and after it as a row may be off by
+    there: Callable[[float], dict[str, np.ndarray]] = lambda _: {}
     size: float = 1.0
     mass: float = 0.0  # of the lightest body
     gravity: float = 0.0
@@ -846,6 +848,15 @@ def truth_at(scene: Scene, bound: float, tight: float, loose: float, begin: Any 
     t.felt = felt(t, apart, APART)
     t.crossings = list(listed(scene, main))
     t.openings = main.openings
+
+    def there(when: float) -> dict[str, np.ndarray]:
+        wanted = np.clip([when, *(when + x for x in shifts)], first, scene.end)
+        every = np.unique(np.concatenate([rows, wanted]))
+        found = Course(scene, every, tight, begin=begin).channels()
+        k = np.searchsorted(every, wanted)
+        return {name: c.values[k[k < len(c.values)]] for name, c in found.items()}
+
+    t.there = there
     return t
 
 

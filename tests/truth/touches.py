@@ -34,8 +34,6 @@ LAW, MU, V0, V1, ROLLING, SPINNING, FIRST, LAST, ROUND = range(28, 37)
 MU_S, V_S, SIGMA0, SIGMA1, STATE, WIDTH = *range(37, 42), 44
 # of a seal
 LOAD, HEIGHT, AT, LOSS, RUB, FULL, ALONG, SPRINGS = 10, 14, 15, 16, 17, 18, 19, 22
-GAUSS = np.polynomial.legendre.leggauss(8)
-U8, W8 = 0.5 * (GAUSS[0] + 1), 0.5 * GAUSS[1]
 MANY = np.polynomial.legendre.leggauss(24)
 U24, W24 = 0.5 * (MANY[0] + 1), 0.5 * MANY[1]
 
@@ -231,6 +229,28 @@ def pressed(x0, x1):
 
 
 @compiled
+def slow_part(n, line, x, height, i, j, r, v, w, full):
+    """Between which places along a line it slides slower than that: twice the slowest one where
+    there are none.  Sliding is linear along the line."""
+    first, last = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for k in range(2):
+        place = line[0] if k == 0 else plus(line[0], line[1])
+        c = minus(place, times(height - x[k], n))
+        speed = minus(speed_at(r, v, w, j, c), speed_at(r, v, w, i, c))
+        slip = minus(speed, times(dot(n, speed), n))
+        if k == 0:
+            first = slip
+        else:
+            last = slip
+    d = minus(last, first)
+    A, B, C = dot(d, d), dot(first, d), dot(first, first) - full * full
+    if 1e-24 * dot(first, first) > A or A == 0.0:
+        return 1e9, 1e9
+    root = np.sqrt(max(B * B - A * C, 0.0)) / A
+    return -B / A - root, -B / A + root
+
+
+@compiled
 def sealed(p, f, i, j, r, v, w, R, Q):
     """Forces of a seal, added to both bodies; power lost by damping and by friction; the whole
     force on body j."""
@@ -241,14 +261,22 @@ def sealed(p, f, i, j, r, v, w, R, Q):
         return damped, rub, whole
     length = np.sqrt(dot(line, line))
     springs = int(p[f, SPRINGS])
+    slowly = slow_part(n, (begin, line), (x0, x1), p[f, HEIGHT], i, j, r, v, w, p[f, FULL])
+    early, late = min(max(slowly[0], low), high), min(max(slowly[1], low), high)
     n_e = springs if springs > 0 else 24
-    n_l = springs if springs > 0 else 8
+    n_l = springs if springs > 0 else 72
     for part in range(2):
         for k in range(n_e if part == 0 else n_l):
             if springs > 0:
                 u, weight = (k + 0.5) / springs, 1.0 / springs
-            elif part == 1:
-                u, weight = low + (high - low) * U8[k], (high - low) * W8[k]
+            elif part == 1:  # finer towards where it is slow
+                s = U24[k % 24]
+                if k < 24:
+                    u, weight = early - (early - low) * s**4, (early - low) * 4 * s**3 * W24[k]
+                elif k < 48:
+                    u, weight = early + (late - early) * s, (late - early) * W24[k - 24]
+                else:
+                    u, weight = late + (high - late) * s**4, (high - late) * 4 * s**3 * W24[k - 48]
             elif x0 < x1:  # finer towards where the load ends
                 u = low + (high - low) * U24[k] ** 2
                 weight = (high - low) * 2.0 * U24[k] * W24[k]

@@ -8,14 +8,18 @@
 
 The elastic load is integrated exactly over the part of the line that is compressed.  It depends on
 the length of that part alone, however the contact breaks into patches.  Damping and friction are
-summed over Gauss points on that part; with `springs`, all loads are summed over equal pieces of the
-line.  Forces act at the projections of the points of the line onto the plane, with opposite signs
-on the two bodies.
+integrated by Gauss's rule on pieces of that part: sliding changes linearly along the line,
 
-Friction has a corner where a point of the line reaches the speed `full_from`.  Steps end where the
-slowest of three points does; if the line slides as a whole, no other corner remains inside them.
-Beyond the ends of a branch friction goes on as on it: it stays full, FULL being so along the whole
-line, or grows with the speed of the slowest point.
+    v_t(u) = v_0 + u d,    u* = -v_0 . d / |d|^2,    m = |v_t(u*)|
+
+so friction is smooth in z, u = u* + m / |d| sinh z, where it is full, and in u where it is not:
+where a line pivots about one of its points, the pieces are cut there (laws/seal.py).  With
+`springs`, all loads are summed over equal pieces of the line.  Forces act at the projections of the
+points of the line onto the plane, with opposite signs on the two bodies.
+
+Steps end where the slowest point of that part reaches the speed `full_from`; of an integrated seal
+no other corner of friction remains inside them.  Beyond the ends of a branch friction goes on as on
+it: it stays full, FULL being so along the whole line, or grows with the speed of the slowest point.
 """
 
 from math import sqrt
@@ -58,7 +62,16 @@ from trsim.fields import point as place
 from trsim.kernels.columns import V3, f8, i8, run
 from trsim.kernels.lazy import internal
 from trsim.laws.friction import CODES, FULL, N_PARAMETERS, ON_RAMP, friction_force
-from trsim.laws.seal import NODES, WEIGHTS, line_load, pressed_part
+from trsim.laws.seal import (
+    NODES,
+    PIECES,
+    cuts,
+    least_speed,
+    line_load,
+    node,
+    pressed_part,
+    whole_of,
+)
 
 MOST = 1000  # springs
 
@@ -238,17 +251,26 @@ def lump(scene, e, u, weight, branch):
 
 
 @internal
-def place_of(own, low, high, k):
+def place_of(own, cuts, k):
     """The k-th place of a sum along the line, and its weight."""
     if own.springs > 0:
         return (k + 0.5) / own.springs, 1.0 / own.springs
-    return low + (high - low) * NODES[k], (high - low) * WEIGHTS[k]
+    return node(cuts, k // len(NODES), k % len(NODES))
 
 
 @internal
 def many(own):
     """Places of a sum along the line."""
-    return own.springs if own.springs > 0 else len(NODES)
+    return own.springs if own.springs > 0 else PIECES * len(NODES)
+
+
+@internal
+def cuts_of(own, part, slides, full):
+    """Where the pieces of the pressed part end; full: whether all of it is drawn as rubbing
+    fully."""
+    if own.friction_law == 0:
+        return whole_of(part)
+    return cuts(part, slides[0], slides[1], 0.0 if full else own.friction[2])
 
 
 @kernel
@@ -260,12 +282,12 @@ def force(t, scene, e):
     low, high = pressed_part(x_0, x_1)
     if low == high:
         return
-    branch = (0.0, 1.0)
+    branch, slides = (0.0, 1.0), sliding(scene, e)
     if own.friction_law != 0 and own.branch != WHOLE:
-        left, (slowest, v_t) = scene.left, sliding(scene, e)
+        left, slowest = scene.left, least_speed((low, high), slides[0], slides[1])
         branch = drawn_on(own, slowest)
         left[e] = max(left[e], full_beyond(own, slowest))
-        if turned_round(scene, e, v_t):
+        if turned_round(scene, e, middle_of(low, high, slides)):
             left[e] = max(left[e], own.friction[2])
     if own.springs == 0:
         whole, first, _ = line_load(x_0 / own.at, x_1 / own.at, own.exponent)
@@ -274,8 +296,11 @@ def force(t, scene, e):
         push_apart(scene.F, own.i, c_i, own.j, c_j, scaled(own.load * own.length * whole, n))
         if own.damping == 0.0 and own.friction_law == 0:
             return
+    at = cuts_of(own, (low, high), slides, branch[0] > 0.0)
     for k in range(many(own)):
-        u, weight = place_of(own, low, high, k)
+        u, weight = place_of(own, at, k)
+        if weight == 0.0:
+            continue
         c_i, c_j, f, damped, rubbed = lump(scene, e, u, weight, branch)
         push_apart(scene.F, own.i, c_i, own.j, c_j, f)
         scene.zd[IMPACTS] += damped
@@ -299,16 +324,17 @@ def full_beyond(own, slowest):
 
 @internal
 def sliding(scene, e):
-    """The least sliding speed of both ends of the line and its middle, and how that slides."""
+    """How the beginning of the line slides, and how much else its end does: linear in between."""
     n, p_j, along, x_0, x_1 = ends(scene, e)
-    least, middle = 1e300, n
-    for k in range(3):
-        u = 0.5 * k
-        _, _, _, v_t = meets(scene, e, n, plus(p_j, scaled(u, along)), x_0 + u * (x_1 - x_0))
-        least = min(least, dot(v_t, v_t))
-        if k == 1:
-            middle = v_t
-    return sqrt(least), middle
+    _, _, _, first = meets(scene, e, n, p_j, x_0)
+    _, _, _, last = meets(scene, e, n, plus(p_j, along), x_1)
+    return first, minus(last, first)
+
+
+@internal
+def middle_of(low, high, slides):
+    """How the middle of a part slides."""
+    return plus(slides[0], scaled(0.5 * (low + high), slides[1]))
 
 
 @kernel
@@ -317,9 +343,13 @@ def corners(t, scene, e):
     out[e, 0], slid[e, 0], slid[e, 1], slid[e, 2] = -1.0, 0.0, 0.0, 0.0
     if own.phase == FLIGHT or own.friction_law == 0:
         return
-    slowest, middle = sliding(scene, e)
+    _, _, _, x_0, x_1 = ends(scene, e)
+    (low, high), slides = pressed_part(x_0, x_1), sliding(scene, e)
+    if low == high:
+        return
+    slowest = least_speed((low, high), slides[0], slides[1])
     if own.branch == FULL:
-        slid[e, 0], slid[e, 1], slid[e, 2] = middle
+        slid[e, 0], slid[e, 1], slid[e, 2] = middle_of(low, high, slides)
     if own.branch == WHOLE:
         out[e, 1] = FULL if slowest > own.friction[2] else ON_RAMP
         return
@@ -338,10 +368,10 @@ def energy(t, scene, e):
         scene.E[CONTACTS] += own.load * own.length * own.at * stored
         return
     for k in range(own.springs):
-        u, weight = place_of(own, 0.0, 1.0, k)
+        u = (k + 0.5) / own.springs
         x = x_0 + u * (x_1 - x_0)
         scene.E[CONTACTS] += (
-            own.length * weight * load_at(own, x) * max(x, 0.0) / (own.exponent + 1.0)
+            own.length / own.springs * load_at(own, x) * max(x, 0.0) / (own.exponent + 1.0)
         )
 
 
@@ -352,14 +382,17 @@ def measure(t, scene, e, o):
     low, high = pressed_part(x_0, x_1)
     total, branch = scaled(0.0, n), (0.0, 1.0)
     if own.phase != FLIGHT and high > low:
+        slides = sliding(scene, e)
         if own.friction_law != 0 and own.branch != WHOLE:
-            slowest, _ = sliding(scene, e)
-            branch = drawn_on(own, slowest)
+            branch = drawn_on(own, least_speed((low, high), slides[0], slides[1]))
         if own.springs == 0:
             whole, _, _ = line_load(x_0 / own.at, x_1 / own.at, own.exponent)
             total = scaled(own.load * own.length * whole, n)
+        at = cuts_of(own, (low, high), slides, branch[0] > 0.0)
         for k in range(many(own)):
-            u, weight = place_of(own, low, high, k)
+            u, weight = place_of(own, at, k)
+            if weight == 0.0:
+                continue
             _, _, f, _, _ = lump(scene, e, u, weight, branch)
             total = plus(total, f)
     f_n = dot(n, total)
