@@ -35,7 +35,7 @@ gallery: .venv/developer
 	$(BIN)/python -m benchmarks.gallery
 
 # tables and figures of README and docs that are stale; rerun it to resume. What measures times,
-# takes hours or is copied by hand is left unless named: make docs NAMES="turns rods"
+# takes long or is copied by hand is left unless named: make docs NAMES="turns rods"
 docs: .venv/developer
 	$(BIN)/python -m benchmarks.docs $(NAMES)
 
@@ -46,7 +46,7 @@ docs-check: .venv/developer
 test: .venv/developer lint
 	$(PYTEST)
 
-# ten times the mutants, kills, faults and rows: hours; rerun it to resume
+# ten times the mutants, kills, faults and rows: half an hour to an hour; rerun it to resume
 release-check: .venv/developer lint
 	TRSIM_SIZE=release $(PYTEST)
 

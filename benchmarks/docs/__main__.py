@@ -1,7 +1,7 @@
 """python -m benchmarks.docs [NAME ...]: make what is stale in the docs again; --check names it.
 
 Each entry of made.py is made by its own command, and its page is written at once, so the same
-command goes on where it was ended.  What measures times, takes hours or is copied by hand is left
+command goes on where it was ended.  What measures times, takes long or is copied by hand is left
 unless it is named.
 """
 

@@ -21,7 +21,7 @@ REVERSER = ("scenarios/thrust_reverser",)
 DOOR = ("scenarios/crew_door",)
 BENCH = ("benchmarks/measure.py", "benchmarks/work_precision.py")
 TIMES = "it measures times and needs a quiet machine"
-HOURS = "it takes hours"
+LONG = "it takes minutes to an hour"
 HAND = "its numbers are copied by hand"
 
 
@@ -49,8 +49,8 @@ MADE: dict[str, Made] = {
         "page",
         "it draws twenty pictures",
     ),
-    "truth": Made("make truth", (*SOLVER, "tests/truth"), "page", HOURS),
-    "stress": Made("make stress", (*SOLVER, "benchmarks/stress"), "page", HOURS),
+    "truth": Made("make truth", (*SOLVER, "tests/truth"), "page", LONG),
+    "stress": Made("make stress", (*SOLVER, "benchmarks/stress"), "page", LONG),
     "turns": bench("turns", way="tables", asked=""),
     "reverser_ideal": bench("reverser_ideal", *REVERSER, way="tables", asked=""),
     "reverser_table": bench("reverser_table", *REVERSER, way="tables", asked=""),
@@ -101,15 +101,15 @@ MADE: dict[str, Made] = {
          "trsim/analyse/embedding.py", "trsim/analyse/scaling.py", "trsim/analyse/growth.py"),
         "tables",
     ),
-    "verdicts": bench("verdicts", *REVERSER, "trsim/studies", way="tables", asked=HOURS),
-    "paper": Made("make paper", (*SOLVER, *REVERSER, "trsim/studies/thrust_reverser"), asked=HOURS),
+    "verdicts": bench("verdicts", *REVERSER, "trsim/studies", way="tables", asked=LONG),
+    "paper": Made("make paper", (*SOLVER, *REVERSER, "trsim/studies/thrust_reverser"), asked=LONG),
     "jam": bench("jam", *REVERSER, way="tables", asked=""),
     "tolerances": bench("tolerances", *REVERSER, way="tables", asked="it takes ten minutes"),
-    "door": Made("make door", (*SOLVER, *DOOR, "trsim/studies/crew_door"), asked=HOURS),
+    "door": Made("make door", (*SOLVER, *DOOR, "trsim/studies/crew_door"), asked=LONG),
     "release": Made(
         "make release-check", ("trsim/store", "trsim/sweeps", "trsim/cli", "tests/store",
-                               "tests/sweeps", "tests/cli"), asked=HOURS),
-    "portable": Made("make portable", (*SOLVER, "tests/portable"), asked=HOURS),
+                               "tests/sweeps", "tests/cli"), asked=LONG),
+    "portable": Made("make portable", (*SOLVER, "tests/portable"), asked=LONG),
     "tutorial": Made(
         "python -m benchmarks.gallery first_mechanism",
         ("docs/first_mechanism.md", "benchmarks/gallery", "trsim/report"),

@@ -17,6 +17,7 @@ from benchmarks.stress.cells import SYSTEMS, Case
 from trsim.analyse.trajectory import Setting, changed, marched, own_first_step, varied
 from trsim.assemble.assemble import assemble
 from trsim.errors import TrsimError
+from trsim.solve.diagnose.doubts import of_books
 
 Array = NDArray[np.float64]
 
@@ -26,6 +27,7 @@ TWIN = 0.2  # tolerance of a twin over that of the run
 SOONER = 0.7  # how much sooner the next horizon tried is
 PEAKS, ENERGY = 0.02, 1e-3  # what a run that says nothing must keep to
 MOST, MOST_OF_TRUTH = 150_000, 1_500_000  # steps
+MOST_OF = {"generalized_alpha": 600_000}  # of second order, and its steps are cheap
 CONVERGED, REFUSED, SAID_SO, WRONG, UNJUDGED = (
     "converged", "refused", "said so", "WRONG", "unjudged",
 )  # fmt: skip
@@ -142,7 +144,7 @@ def verdict(bench: Bench, case: Case, method: str, value: float) -> Verdict:
     if bench.refused:
         return about
     setting = Setting(method, None, value) if method == "rk4" else Setting(method, value)
-    ran = bench.run(setting, bench.end, None, MOST)
+    ran = bench.run(setting, bench.end, None, most_of(method))
     if ran.refused:
         return replace(about, reason=ran.refused)
     numbers = ran.outcome.statistics
@@ -157,6 +159,7 @@ def verdict(bench: Bench, case: Case, method: str, value: float) -> Verdict:
 
 def compared(bench: Bench, about: Verdict, setting: Setting, ran: Ran) -> Verdict:
     """A run that says it is done, against the truth before the horizon."""
+    whole = ran
     key, tight, truth = bench.truth(setting)
     if not done(truth):
         why = truth.refused or truth.outcome.reason
@@ -170,7 +173,8 @@ def compared(bench: Bench, about: Verdict, setting: Setting, ran: Ran) -> Verdic
         end = max(0.98 * float(ran.rows[horizon, 0]), float(ran.rows[1, 0]))
     while True:
         if end < bench.end:  # once more up to there, for the peaks
-            runs = (bench.run(setting, end, None, MOST), bench.run(other, end, None, MOST_OF_TRUTH))
+            most = most_of(setting.method)
+            runs = (bench.run(setting, end, None, most), bench.run(other, end, None, MOST_OF_TRUTH))
             ran, twin, truth = *runs, bench.run(tight, end, None, MOST_OF_TRUTH)
             if not (done(ran) and done(twin) and done(truth)):
                 return replace(about, verdict=UNJUDGED, reason="a run to the horizon did not end")
@@ -187,10 +191,18 @@ def compared(bench: Bench, about: Verdict, setting: Setting, ran: Ran) -> Verdic
     n = min(len(ran.rows), len(truth.rows))
     scale = float(np.max(np.abs(truth.rows[:n, columns])))
     path = float(np.max(np.abs(ran.rows[:n, columns] - truth.rows[:n, columns]))) / scale
+    told = [*of_books(bench.scenario, bench.mechanism, whole.outcome)]
+    if error > PEAKS and told:
+        return replace(about, verdict=SAID_SO, reason=told[0])
     return replace(
         about, verdict=CONVERGED if error <= PEAKS else WRONG, peak_error=error, path_error=path,
         horizon=end / bench.end, truth=key,
     )  # fmt: skip
+
+
+def most_of(method: str) -> int:
+    """Steps that a run may take."""
+    return MOST_OF.get(method, MOST)
 
 
 def twin_of(setting: Setting) -> Setting:
