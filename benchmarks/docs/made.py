@@ -14,6 +14,7 @@ class Made(NamedTuple):
     of: tuple[str, ...]
     way: Way = "copied"
     asked: str = ""  # why it is only made by its name
+    words: bool = False  # whether sentences in sources are a part of what is made
 
 
 SOLVER = ("trsim/laws", "trsim/elements", "trsim/assemble", "trsim/solve")
@@ -41,6 +42,7 @@ MADE: dict[str, Made] = {
         "python -m benchmarks.docs.reference",
         ("trsim/elements", "trsim/scenario", "trsim/units.py", "benchmarks/docs/reference.py"),
         "page",
+        words=True,
     ),
     "gallery": Made(
         "python -m benchmarks.gallery",
@@ -48,6 +50,7 @@ MADE: dict[str, Made] = {
          "scenarios/gallery"),
         "page",
         "it draws twenty pictures",
+        words=True,
     ),
     "truth": Made("make truth", (*SOLVER, "tests/truth"), "page", LONG),
     "stress": Made("make stress", (*SOLVER, "benchmarks/stress"), "page", LONG),
@@ -115,6 +118,7 @@ MADE: dict[str, Made] = {
         ("docs/first_mechanism.md", "benchmarks/gallery", "trsim/report"),
         "page",
         "it draws pictures",
+        words=True,
     ),
 }  # fmt: skip
 

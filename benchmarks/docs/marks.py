@@ -14,12 +14,14 @@ import hashlib
 import re
 import subprocess
 import tempfile
+import tokenize
 from collections.abc import Iterator
 from functools import cache
+from io import StringIO
 from pathlib import Path
 from typing import NamedTuple
 
-from benchmarks.docs.made import MADE
+from benchmarks.docs.made import MADE, Made
 from benchmarks.trees import unpack
 
 ROOT = Path(__file__).parents[2]
@@ -30,6 +32,7 @@ MARK = re.compile(
 )
 END = "<!-- end -->"
 DOCUMENTED = ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef
+EMPTY = b'""'
 READ = (".py", ".yaml", ".csv", ".toml")  # what of a folder is a source
 TABLE = re.compile(r"(?:^ *\|.*\n?)+", re.MULTILINE)
 
@@ -99,20 +102,28 @@ def files(root: Path, of: tuple[str, ...]) -> Iterator[Path]:
             yield path
 
 
-def digest(of: tuple[str, ...], root: Path = ROOT) -> str:
+def digest(of: tuple[str, ...], root: Path = ROOT, words: bool = True) -> str:
     """Of the sources, without what only people read: docstrings, lines of comment, empty lines and
-    markers."""
+    markers; without `words` also without sentences, which make no number."""
     found = hashlib.sha256()
     for path in files(root, of):
         text = path.read_text(encoding="utf-8")
-        told = statements(text) if path.suffix == ".py" else lines_of(text)
+        told = statements(text, words) if path.suffix == ".py" else lines_of(text)
         found.update(f"\n{path.relative_to(root).as_posix()}\n{told}".encode())
     return found.hexdigest()[:12]
 
 
+def digest_of(made: Made, root: Path = ROOT) -> str:
+    """That of the sources of an entry."""
+    return digest(made.of, root, made.words)
+
+
 @cache
-def statements(text: str) -> str:
-    """The lines of a Python source without docstrings."""
+def statements(text: str, words: bool = True) -> str:
+    """The lines of a Python source without docstrings; without `words` each statement in one line,
+    with nothing in place of its sentences."""
+    if not words:
+        return in_lines(without_sentences(text))
     lines = text.splitlines()
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, DOCUMENTED) and ast.get_docstring(node, clean=False) is not None:
@@ -120,6 +131,37 @@ def statements(text: str) -> str:
             count = (said.end_lineno or said.lineno) - said.lineno + 1
             lines[said.lineno - 1 : said.lineno - 1 + count] = [""] * count
     return lines_of("\n".join(lines))
+
+
+def without_sentences(text: str) -> str:
+    """A Python source with empty texts in place of those that hold a space."""
+    data, spans = text.encode(), set()
+    starts = [0, *(at.end() for at in re.finditer(rb"\n", data))]
+    for node in ast.walk(ast.parse(text)):
+        parts = node.values if isinstance(node, ast.JoinedStr) else [node]
+        said = (p.value for p in parts if isinstance(p, ast.Constant) and isinstance(p.value, str))
+        if isinstance(node, ast.expr) and any(" " in one for one in said):
+            last = starts[(node.end_lineno or node.lineno) - 1] + (node.end_col_offset or 0)
+            spans.add((starts[node.lineno - 1] + node.col_offset, last))
+    for first, last in sorted(spans, reverse=True):
+        if not any(a <= first and last <= b and (a, b) != (first, last) for a, b in spans):
+            data = data[:first] + EMPTY + data[last:]
+    return data.decode()
+
+
+def in_lines(text: str) -> str:
+    """A Python source with every statement in one line, without comments and sentences alone."""
+    found, lines, first = [], text.splitlines(), 0
+    for token in tokenize.generate_tokens(StringIO(text).readline):
+        row, column = token.start
+        if token.type == tokenize.COMMENT:
+            lines[row - 1] = lines[row - 1][:column].rstrip()
+        elif token.type == tokenize.NEWLINE:
+            parts = [line for line in lines[first:row] if line.strip()]
+            joined = " ".join([parts[0].rstrip(), *(part.strip() for part in parts[1:])])
+            found.append(re.sub(r",? (?=[\])}])", "", re.sub(r"(?<=[\[({]) ", "", joined)))
+            first = row
+    return "\n".join(line for line in found if line.strip() != EMPTY.decode())
 
 
 def lines_of(text: str) -> str:
@@ -131,19 +173,19 @@ def lines_of(text: str) -> str:
     return "\n".join(kept)
 
 
-def digest_at(of: tuple[str, ...], commit: str) -> str:
+def digest_at(made: Made, commit: str) -> str:
     """The same of the tree of a commit."""
     listed = (
         printed(["git", "-C", str(ROOT), "ls-tree", "-r", "--name-only", commit])
         .decode()
         .splitlines()
     )
-    there = [name for name in of if any(f"{one}/".startswith(f"{name}/") for one in listed)]
+    there = [name for name in made.of if any(f"{one}/".startswith(f"{name}/") for one in listed)]
     if not there:
         return digest(())
     with tempfile.TemporaryDirectory() as folder:
         unpack(commit, Path(folder), *there)
-        return digest(of, Path(folder))
+        return digest_of(made, Path(folder))
 
 
 def printed(command: list[str]) -> bytes:
@@ -158,7 +200,7 @@ def stale(one: Marked) -> str:
         return "benchmarks/docs/made.py does not know it"
     if one.command != known.command:
         return f"is made by {known.command} now"
-    if one.digest != digest(known.of):
+    if one.digest != digest_of(known):
         return "its sources have changed" + (f" since {one.commit}" if one.commit else "")
     return ""
 
@@ -193,5 +235,5 @@ def replaced(text: str, one: Marked, body: str, commit: str = "") -> str:
     lines = text.splitlines()
     before = lines[one.line - 1]
     indent = before[: len(before) - len(before.lstrip())]
-    head = indent + opening(one.whole, digest(MADE[one.name].of), commit)
+    head = indent + opening(one.whole, digest_of(MADE[one.name]), commit)
     return "\n".join([*lines[: one.first - 1], head, *body.splitlines(), *lines[one.last :]]) + "\n"

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from benchmarks.docs.made import MADE
-from benchmarks.docs.marks import DOCS, END, digest, opening
+from benchmarks.docs.marks import DOCS, END, digest_of, opening
 from trsim.cli.explain import as_written
 from trsim.scenario.explain import explained
 
@@ -25,7 +25,7 @@ expression.
 def page(mark: str = "") -> str:
     """The whole page; mark: its marker, as of now if none."""
     every = explained()
-    mark = mark or opening("reference", digest(MADE["reference"].of))
+    mark = mark or opening("reference", digest_of(MADE["reference"]))
     return "\n".join([HEAD, mark, "", *_body(every), "", END, ""])
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from benchmarks.docs.made import MADE
-from benchmarks.docs.marks import END, digest, marked, opening
+from benchmarks.docs.marks import END, digest_of, marked, opening
 from trsim.scenario.shipped import FOLDERS, TEMPLATES, Template, template
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -37,7 +37,7 @@ ONE = """
 
 def page(mark: str = "") -> str:
     """The whole page; mark: the marker of its pictures (benchmarks/docs), as of now if none."""
-    mark = mark or opening("gallery", digest(MADE["gallery"].of))
+    mark = mark or opening("gallery", digest_of(MADE["gallery"]))
     every = [template(name) for name in TEMPLATES]
     contents = "\n".join(f"* [{one.name}](#{one.name}): {one.title}" for one in every)
     return TOP.format(contents=contents, mark=mark) + "".join(map(entry, every)) + f"\n{END}\n"

@@ -8,7 +8,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from benchmarks.docs.made import MADE
-from benchmarks.docs.marks import digest
+from benchmarks.docs.marks import digest_of
 from benchmarks.measure import ROOT
 from benchmarks.stress.cells import CASES, Case, cases
 from trsim.version import __version__
@@ -39,7 +39,7 @@ def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else CASES
     FILE.parent.mkdir(parents=True, exist_ok=True)
     every = list(cases(count))
-    sources = digest(MADE["stress"].of)
+    sources = digest_of(MADE["stress"])
     left = [case for case in every if case.name not in known(FILE)]
     print(f"{len(every)} cases, {len(left)} left; {FILE.relative_to(ROOT)}", flush=True)
     started = time.monotonic()

@@ -55,9 +55,9 @@ def page(tmp_path, monkeypatch):
     monkeypatch.setitem(MADE, "made_up", LONG)
     monkeypatch.setattr(marks, "ROOT", tmp_path)
     digest = marks.digest
-    monkeypatch.setattr(marks, "digest", lambda of: digest(of, tmp_path))
+    monkeypatch.setattr(marks, "digest", lambda of, _, words: digest(of, tmp_path, words))
     page = tmp_path / "page.md"
-    head = marks.opening("made_up:2", marks.digest(LONG.of), "abc1234")
+    head = marks.opening("made_up:2", marks.digest_of(LONG), "abc1234")
     text = f"# Page\n\n{head}\n\n| a |\n|---|\n| 1 |\n\n{marks.END}\n\nEnd.\n"
     page.write_text(text, encoding="utf-8", newline="\n")
     monkeypatch.setattr(marks, "pages", lambda: [page])
@@ -143,3 +143,28 @@ def test_what_only_people_read_makes_nothing_stale(tmp_path):
     assert marks.digest(("a.py",), tmp_path) == before
     source.write_text(text.replace("2 * x", '"""Twice x."""'))
     assert marks.digest(("a.py",), tmp_path) != before
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "same"),
+    [
+        ('raise E("no such thing", x)', 'raise E(\n    f"there is no {x}",\n    x,\n)', True),
+        ('raise E(f"of {x} there is none", x)', 'raise E(f"there is no {y}", x)', True),
+        ('"""It says."""\nx = 1', '"""Says what it is."""\n\n\n# why\nx = 1  # m', True),
+        ('x = "one"', 'x = "two"', False),
+        ('x = f"{a}"', 'x = f"{b}"', False),
+        ('x = f("a b", 1)', 'x = f("a c", 2)', False),
+        ("if a:\n    x = 1\n    y = 2", "if a:\n    x = 1\ny = 2", False),
+        ("x = (1, 2)", "x = (1, 2, 3)", False),
+        ('class A(B):\n    """Is one."""', 'class A(B):\n    """Is another one."""', True),
+    ],
+)
+def test_sentences_make_no_number(before, after, same, tmp_path):
+    """Pages of words are another matter."""
+    found = []
+    for text in (before, after):
+        (tmp_path / "a.py").write_text(text + "\n", encoding="utf-8")
+        found.append([marks.digest(("a.py",), tmp_path, words) for words in (True, False)])
+    (old, old_numbers), (new, new_numbers) = found
+    assert old != new or '"""' in before
+    assert (old_numbers == new_numbers) is same

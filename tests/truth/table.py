@@ -154,7 +154,7 @@ def still_open(lines: list[dict[str, Any]]) -> str:
 
 def marker(commit: str) -> str:
     """The first marker of what was measured with the seeds of a commit (benchmarks/docs)."""
-    return opening("truth", digest_at(MADE["truth"].of, commit), commit)
+    return opening("truth", digest_at(MADE["truth"], commit), commit)
 
 
 def write(file: Path) -> Path:
