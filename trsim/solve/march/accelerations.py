@@ -188,10 +188,15 @@ def rounded(s, r, turned):
     """What rounding makes of accelerations, m/s^2.
 
     turned: rad, by which what the error consists of turns in the step, 0 where it is not known;
-    rounding of speeds is felt that many times.
+    rounding of speeds is felt that many times.  Of what spins fast, about an axis that needs no
+    torque, gyroscopic torques cancel.
     """
     free = r.speed**2 / r.length
     for f in range(1, s.n_r):
+        if s.d == 6:
+            k = s.n_q + 6 * (f - 1) + 3
+            turning = r.y[k] * r.y[k] + r.y[k + 1] * r.y[k + 1] + r.y[k + 2] * r.y[k + 2]
+            free = max(free, turning * s.scale[k])
         for c in range(s.d):
             turns = c == 2 if s.d == 3 else c > 2
             free = max(free, abs(s.free[f, c]) * (s.reach if turns else 1.0))
