@@ -34,6 +34,7 @@ from .statics import judged as judged_path
 PHASED = "phased"
 DAMPED = 0.05  # of the time of a swing: what springs of joints damp a motion with
 STEP = 1e-4  # s, of differences
+LONGER, SMOOTH = 10.0, 1e-6  # times the step; of the rates: by so much may two differences differ
 
 
 @family
@@ -75,10 +76,16 @@ def begun(s: Scene, r: Ran, t: float, lets_go: bool) -> tuple[float, np.ndarray,
     there, top = balance.balanced(t, q | balance.place_of(t), None)
     if top > -1e-9:
         raise Unfit("the balance that the motion begins in is not stable")
-    ahead, behind = (
-        balance.balanced(x, there | balance.place_of(x), None)[0] for x in (t + STEP, t - STEP)
-    )
-    way = {name: (ahead[name] - behind[name]) / (2 * STEP) for name in there}
+
+    def way_by(h: float) -> dict[str, float]:
+        """The rates of the balance, by differences of fourth order."""
+        at = {k: balance.balanced(t + k * h, there | balance.place_of(t + k * h), None)[0]
+              for k in (-2, -1, 1, 2)}  # fmt: skip
+        return {n: (8 * (at[1][n] - at[-1][n]) - at[2][n] + at[-2][n]) / (12 * h) for n in there}
+
+    way, longer = way_by(STEP), way_by(LONGER * STEP)
+    if all(abs(longer[n] - way[n]) <= SMOOTH * max(map(abs, way.values())) for n in way):
+        way = longer  # no corner is near, and rounding is felt less
     y = balance.state(there, way)
     for b in range(len(s.bodies)):
         y[13 * b + 7 : 13 * b + 13] /= CREEP

@@ -23,6 +23,8 @@ BOUND, RUBBED = 1e-6, 3e-5  # of the scales; where what rubs slides in direction
 PARTS = 5  # steps from row to row
 FAR = 0.2  # rad or a length: what is further away is another equilibrium
 SMALL = 1e-6  # of differences
+LIMIT = "limit"  # how a path ends that has no way on
+NOTHING = 1e-9  # of what scenes are drawn with: where nothing acts, rounding is left
 CREEP = 1e-6  # speed of the way, which no inertia feels
 
 
@@ -199,8 +201,11 @@ def judged(s: Scene, r: Ran, v: Verdict) -> Verdict:
                     if balance.rubs:
                         for _ in range(3):
                             q, top = balance.balanced(at, q, way)
+                            came = slips(balance, q, way)
                             way = {n: (q[n] - last[n]) / ahead for n in q}
                         after = slips(balance, q, way)
+                        if any(a * b < 0 for a, b in zip(came, after, strict=True)):
+                            raise Unfit("it sticks, or which way it rubs is not settled")
                         if before_slip and any(
                             a * b < 0 or (b != 0 and abs(b) < 1e-4 * size(s) / s.end)
                             for a, b in zip(before_slip, after, strict=True)
@@ -270,6 +275,8 @@ def compared(
             gravity=float(np.linalg.norm(s.gravity)),
         )
     )
+    if r.status == LIMIT and at and at[-1] == len(r.t) - 1:  # there places change with the root
+        at, found = at[:-1], {n: replace(c, values=c.values[:-1]) for n, c in found.items()}
     turning = not s.flat and any(isinstance(x, Grip) and x.friction != "none" for x in s.laws)
     bound = RUBBED if turning else BOUND
     for name, c in found.items():
@@ -283,7 +290,7 @@ def compared(
             Q = s.turned
             got = np.einsum("ji,njk,kl->nil", Q, got.reshape(-1, 3, 3), Q).reshape(-1, 9)
         off = np.abs(got - c.values)
-        ratio = np.where(np.isfinite(got), off, np.inf) / (bound * top[c.kind])
+        ratio = np.where(np.isfinite(got), off, np.inf) / (bound * max(top[c.kind], NOTHING))
         i, j = np.unravel_index(np.argmax(ratio), ratio.shape)
         if ratio[i, j] > v.ratio:
             v.ratio = float(ratio[i, j])
