@@ -57,6 +57,7 @@ from trsim.solve.march.peaks import call_finish, call_sample
 from trsim.solve.march.phases import change_phases, latch
 from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS, SLOPE
 from trsim.solve.march.samples import firmness_of_extremes
+from trsim.solve.march.sections import BY_CORNER, BY_EVENT, SMOOTHLY
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
 from trsim.solve.march.turns import BEYOND, BRIEF, beats_in, pulse, too_far, unseen
 from trsim.solve.march.unseen import errs_unseen
@@ -193,7 +194,7 @@ def complete(s, r, b, setting, method):
     if event or corner or last_of_its_kind(s, r, b, setting, method):
         call_finish(method[FINISH_AT], s, r, b, setting, method)
     if method[SECTIONS_AT] > 0:
-        call_sections(method[SECTIONS_AT], s, r, b, method, int(event or corner))
+        call_sections(method[SECTIONS_AT], s, r, b, method, how_it_ends(b, event, corner))
     if method[PASSES_AT] > 0 and s.near_rows > 0.0:  # there is a loop still
         call_passes(method[PASSES_AT], s, r, b, last)
     keep_step(r, b, method)
@@ -216,6 +217,20 @@ def complete(s, r, b, setting, method):
             turned = call_turn(method[TURN_AT], s, r, b, setting, method, met + int(event))
             outcome = WITH_CORNER if turned > 0 and not event else outcome
     return outcome
+
+
+@internal
+def how_it_ends(b, event, corner):
+    """An accepted step, for sections: where a law has a corner no contact begins or ends."""
+    if not event:
+        return BY_CORNER if corner else SMOOTHLY
+    first = NONE
+    for c in range(b.corner_root.size):
+        first = min(first, b.corner_root[c])
+    for c in range(b.root.size):
+        if b.root[c] <= first + SAME:
+            return BY_EVENT
+    return BY_CORNER
 
 
 @internal

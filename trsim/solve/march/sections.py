@@ -79,6 +79,8 @@ from trsim.solve.march.sampled import (
 )
 
 AHEAD = 1e-4  # of a step: how far the rate of a channel looks
+SMOOTHLY, BY_EVENT, BY_CORNER = range(3)  # how a step ends
+VALUE = 2.0  # of KNOWN: the value at the start, not its rate
 JUMP = 1e-6  # of how far a channel swung before: more than that is not done in one ulp
 AT_START = 1e-9  # of a channel's next value: so small, a run starts on zero and rounding is left
 
@@ -87,13 +89,16 @@ AT_START = 1e-9  # of a channel's next value: so small, a run starts on zero and
 def sections(s, r, b, method, event):
     """Write the points of the step at hand into b.points; it is about to be accepted.
 
-    Its end, measured, is in b.out.  event: whether an event ends it.  Counters are left as they
-    were.
+    Its end, measured, is in b.out.  event: how it ends.  What places and rates tell goes on
+    smoothly up to a corner of a law, and its rate may have another one behind it.  Counters are
+    left as they were.
     """
     last, built, t1 = method[LAST_AT], b.built, b.t1
     counted = (s.status[0], s.status[1], s.status[2], s.status[3])
     turn = turn_of(s, r, b, last)
     b.alone = int(as_interpolated(s, r, b, turn))
+    if event == BY_CORNER and not all_alone(s):
+        event = BY_EVENT
     for j in range(b.looked.size):
         b.looked[j] = 0
     ends_known(s, r, b, last, event)
@@ -103,7 +108,7 @@ def sections(s, r, b, method, event):
         kind = s.section[k, KIND]
         parts = max(still, swinging) if s.section[k, WAVES] > 0 else still
         if kind == TOUCH:
-            if event > 0 and touches(s, r, b, s.section[k, WHEN]):
+            if event == BY_EVENT and touches(s, r, b, s.section[k, WHEN]):
                 point(s, r, b, k, t1, b.out)
         elif (kind == STROBE and instant(s, r, k) <= latest(t1)) or (
             crosses_after(s, k, t1) and may_cross(s, r, b, k, event, parts)
@@ -189,12 +194,13 @@ def ends_known(s, r, b, last, event):
 
     b.P is free for scratch where it holds no dense output yet.
     """
-    lost = asked = False
+    lost = asked = begun = False
     t, t1 = b.t, b.t1
     for k in range(s.section.shape[0]):
         if crosses_after(s, k, t1):
-            asked = event == 0
+            asked = event != BY_EVENT
             lost = lost or r.section[k, KNOWN] == 0.0
+            begun = begun or r.section[k, KNOWN] == VALUE
     scratch, done, energy_0 = b.P[0], r.work_projection, r.energy_0
     if b.built > 0:
         scratch = b.K[1]
@@ -207,12 +213,17 @@ def ends_known(s, r, b, last, event):
                 if abs(first - r.section[k, LAST]) > JUMP * r.section[k, FAR]:  # not rounding alone
                     r.section[k, ON] = side_of(first, r.section[k, ON])
                 r.section[k, LAST] = first
+    ahead = AHEAD * (t1 - t)
+    if begun and asked:
+        rates_by_places(s, r.y, r.yd, ahead, b.y2)
+        for k in range(s.section.shape[0]):
+            if s.section[k, KIND] == CROSSING and r.section[k, KNOWN] == VALUE:
+                call_one(s, s.measure, t + ahead, s.section[k, ALONE])
+                change = s.out[s.section[k, WHEN]] - r.section[k, LAST]
+                r.section[k, RATE] = change / ahead
     if asked:
-        ahead = AHEAD * (t1 - t)
-        for c in range(b.y2.size):
-            b.y2[c] = b.y1[c] + ahead * b.K[last, c]
+        rates_by_places(s, b.y1, b.K[last], ahead, b.y2)
         if all_alone(s):
-            set_poses(s, b.y2)
             for k in range(s.section.shape[0]):
                 if s.section[k, KIND] == CROSSING:
                     call_one(s, s.measure, t1 + ahead, s.section[k, ALONE])
@@ -223,6 +234,14 @@ def ends_known(s, r, b, last, event):
             if s.section[k, KIND] == CROSSING:
                 o = s.section[k, WHEN]
                 r.section[k, END_RATE] = (s.out[o] - b.out[o]) / ahead
+
+
+@internal
+def rates_by_places(s, y, yd, ahead, out):
+    """Set the poses a little ahead of a state, out <- y + ahead y'."""
+    for c in range(out.size):
+        out[c] = y[c] + ahead * yd[c]
+    set_poses(s, out)
 
 
 @internal
@@ -255,14 +274,15 @@ def keep_end(s, r, b, k, event):
     r.section[k, FAR] = max(r.section[k, FAR], abs(r.section[k, LAST]))
     r.section[k, ON] = side_of(r.section[k, LAST], r.section[k, ON])
     r.section[k, RATE] = r.section[k, END_RATE]
-    r.section[k, KNOWN] = 1.0 if event == 0 and b.t1 >= s.section_at[k, AFTER] else 0.0
+    known = 1.0 if event == SMOOTHLY else (VALUE if event == BY_CORNER else 0.0)
+    r.section[k, KNOWN] = known if b.t1 >= s.section_at[k, AFTER] else 0.0
 
 
 @internal
 def may_cross(s, r, b, k, event, parts):
     """Whether the step must be looked into: the sign changes, or the cubic comes near zero."""
     side, length = r.section[k, ON], b.t1 - b.t
-    if event > 0 or r.section[k, KNOWN] == 0.0 or side == 0.0 or parts > PARTS:
+    if event == BY_EVENT or r.section[k, KNOWN] == 0.0 or side == 0.0 or parts > PARTS:
         return True
     f0, f1 = side * r.section[k, LAST], side * b.out[s.section[k, WHEN]]
     rise = f1 - f0
