@@ -1,9 +1,12 @@
 """Seal: a line load on a plane, against closed forms and against many springs."""
 
-from math import sqrt
+from itertools import pairwise
+from math import cos, sin, sqrt
 
 import numpy as np
 import pytest
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
 
 from trsim.assemble.equations import gaps
 from trsim.errors import ScenarioError
@@ -154,6 +157,77 @@ solver: {{method: {method}, end: 1, tolerance: 1e-8}}
     assert omega[-1] < 0.03 < omega[0]
 
 
+@pytest.mark.parametrize("exponent", [1.0, 1.2, 3.0])
+@pytest.mark.parametrize("method", ["static_path", "dop853", "radau"])
+def test_a_strip_that_is_pressed_in_part_and_turns_about_its_end(exponent, method):
+    """The torque of its friction, against adaptive quadrature: what slides slower than 10 um/s does
+    so in proportion, along a static path nothing does."""
+    length, rate, full = 0.6, 0.8, 1e-5
+    text = f"""
+planar: false
+bodies: {{strip: {{mass: 1, inertia: [1, 1, 0.2], at: [0, 0, 0]}}}}
+joints: {{pin: {{type: revolute, bodies: [ground, strip], at: [0, 0, 0]}}}}
+drives: {{motor: {{joint: pin, position: "{rate}*t"}}}}
+forces:
+  under: {{type: seal, line: {{body: strip, start: [0, 0, 0], end: [{length}, 0, 0.004]}},
+          against: {{body: ground, at: [0, 0, 0], normal: [0, 0, 1]}}, height: 0.003,
+          load: 130, at: 0.004, exponent: {exponent}, friction: 0.5, full_from: {full}}}
+solver: {{method: {method}, end: 1}}
+output: {{every: 0.25}}
+"""
+    got, w = run(text), rate / (full if method != "static_path" else 1e-12)
+
+    def torque(r):
+        x = max(0.003 - 0.004 * r / length, 0.0) / 0.004
+        return 130 * x**exponent * 0.5 * r * min(1.0, w * r)
+
+    want = quad(torque, 0, 1 / w)[0] + quad(torque, 1 / w, 0.75 * length, epsabs=1e-12)[0]
+    want *= sqrt(1 + (0.004 / length) ** 2)  # along the strip, which is tilted
+    assert got["motor.force"][1:] == pytest.approx(want, rel=1e-6)
+
+
+@pytest.mark.parametrize("spin", [1.5, -0.5, -1.5])
+def test_a_seal_that_is_let_go_of_does_not_pull(spin):
+    """A flap about one end of its seal: load q0 (1 + max(c x', -1)), x = h - r phi, x' = -r omega,
+    integrated by hand from the hinge to where it is not pressed any more."""
+    length, q, c, high, inertia = 0.6, 100 / 0.004, 20.0, 0.0055, 0.05
+    text = f"""
+planar: false
+bodies: {{flap: {{mass: 2, inertia: [{inertia}, {inertia}, {inertia}], at: [0, 0, 0],
+                angular_velocity: [0, {spin}, 0]}}}}
+joints: {{hinge: {{type: revolute, bodies: [ground, flap], at: [0, 0, 0], axis: [0, 1, 0]}}}}
+forces:
+  rim: {{type: seal, line: {{body: flap, start: [0, 0, 0], end: [{length}, 0, 0]}},
+        against: {{body: ground, at: [0, 0, -0.0005], normal: [0, 0, 1]}}, height: 0.006,
+        load: 100, at: 0.004, damping: {c}}}
+solver: {{end: 20 ms, tolerance: 1e-9}}
+output: {{every: 1 ms}}
+"""
+    got = run(text)
+
+    def loads(turned, omega):
+        """Force and moment about the hinge; turned downwards: pressed in more."""
+        ends = [0.0, length]
+        if turned < 0.0:
+            ends[1] = min(length, high / -sin(turned))
+        ends += [x for x in [1.0 / (c * -omega) if omega < 0.0 else -1.0] if 0.0 < x < ends[1]]
+        total = np.zeros(2)
+        for a, b in pairwise(sorted(ends)):
+            x, weight = np.polynomial.legendre.leggauss(8)
+            r = a + 0.5 * (b - a) * (x + 1.0)
+            load = q * (high + r * sin(turned)) * (1 + np.maximum(c * r * omega * cos(turned), -1))
+            total += 0.5 * (b - a) * np.array([weight @ load, weight @ (load * r)])
+        return total
+
+    def motion(_, y):
+        return y[1], -loads(*y)[1] * cos(y[0]) / inertia
+
+    want = solve_ivp(motion, (0, 0.02), (0.0, spin), rtol=1e-11, atol=1e-13, t_eval=got.t)
+    assert got["flap.angular_velocity"][:, 1] == pytest.approx(want.y[1], abs=2e-6)
+    force = [loads(*y)[0] for y in want.y.T]
+    assert got["rim.normal_force"] == pytest.approx(force, rel=2e-5, abs=1e-3)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_no_touch_of_either_end_is_passed_over(seed):
     """A spinning bar with a seal along it, beside a plane: each end touches once a turn."""
@@ -210,3 +284,87 @@ def test_a_seal_pressed_through_its_plane_is_told():
     got = run(sealed_door(speed=5.0)[0])
     words = doubts(got.scenario, got.mechanism, got.outcome)
     assert any("went through the plane" in one for one in words)
+
+
+# --- along static paths ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("move, off", [("0.2*t + 0.3*t**2", 3e-5), ("0.2*sin(2*t)", 2.5e-3)])
+def test_a_line_that_slides_and_turns(move, off):
+    """Friction at every point is against its own velocity, which turns along the path: of second
+    order in the time between rows, as that of a ball is (of 7.2 N, 3e-4)."""
+    text = f"""
+planar: false
+bodies: {{strip: {{mass: 1e-4, inertia: [1e-4, 1e-4, 1e-4], at: [0, 0, 0]}}}}
+joints: {{table: {{type: planar, bodies: [ground, strip], at: [0, 0, 0], axis: [0, 0, 1],
+                 x_axis: [1, 0, 0]}}}}
+drives:
+  dx: {{joint: table.x, position: "{move}"}}
+  dy: {{joint: table.y, position: "0.1*t"}}
+  da: {{joint: table.angle, position: "0.7*t"}}
+forces:
+  under: {{type: seal, line: {{body: strip, start: [-0.2, 0.1, 0], end: [0.4, 0.1, 0]}},
+          against: {{body: ground, at: [0, 0, 0], normal: [0, 0, 1]}}, height: 4 mm, load: 30,
+          at: 4 mm, friction: 0.4}}
+solver: {{method: static_path, end: 1}}
+output: {{every: 0.05}}
+"""
+    got = run(text)
+    for k, t in enumerate(got.t):
+        speed = 0.2 + 0.6 * t if "t**2" in move else 0.4 * cos(2 * t)
+        c, s = cos(0.7 * t), sin(0.7 * t)
+
+        def density(u, of, speed=speed, c=c, s=s):
+            x, y = c * (-0.2 + 0.6 * u) - s * 0.1, s * (-0.2 + 0.6 * u) + c * 0.1
+            v = np.array([speed - 0.7 * y, 0.1 + 0.7 * x])
+            v *= 30 * 0.6 * 0.4 / np.linalg.norm(v)
+            return (*v, x * v[1] - y * v[0])[of]
+
+        want = [quad(density, 0, 1, args=(of,), points=[0.2, 0.5, 0.8])[0] for of in range(3)]
+        force = [got[f"{name}.force"][k] for name in ("dx", "dy", "da")]
+        assert force == pytest.approx(want, abs=off), t
+
+
+@pytest.mark.parametrize("rows", [10, 50, 250])
+def test_a_rod_that_is_pulled_by_its_end(rows):
+    """Nothing but its friction holds it: at first it turns about the point at which that has no
+    moment about the pulled end, 1/sqrt 2 of its length from there, and the pull is
+    mu q L (sqrt 2 - 1)."""
+    text = f"""
+planar: false
+bodies:
+  hand: {{mass: 0.01, inertia: [1e-5, 1e-5, 1e-5], at: [0, 0, 0]}}
+  rod: {{mass: 0.01, inertia: [1e-5, 1e-3, 1e-3], at: [0.5, 0, 0]}}
+joints:
+  slide: {{type: prismatic, bodies: [ground, hand], axis: [0, 1, 0]}}
+  pin: {{type: revolute, bodies: [hand, rod], at: [0, 0, 0]}}
+drives: {{pull: {{joint: slide, position: "0.8*t"}}}}
+sensors: {{angle: {{joint: pin}}}}
+forces:
+  under: {{type: seal, line: {{body: rod, start: [0, 0, 0], end: [1, 0, 0]}},
+          against: {{body: ground, at: [0, 0, 0], normal: [0, 0, 1]}}, height: 4 mm, load: 30,
+          at: 4 mm, friction: 0.4}}
+solver: {{method: static_path, end: 1}}
+output: {{every: {1 / rows}}}
+"""
+    got = run(text)
+    assert got["pull.force"][0] == pytest.approx(0.4 * 30 * (sqrt(2) - 1), rel=1e-6)
+
+    def turning(_, y):
+        """phi' where friction has no moment about the pulled end: v(s) = v + s phi' across."""
+        phi = y[0]
+
+        def moment(rate):
+            x, w = np.polynomial.legendre.leggauss(60)
+            total = 0.0
+            at = np.clip(-0.8 * cos(phi) / rate, 0.0, 1.0) if rate else 0.0  # nearest to rest
+            for a, b in ((0.0, at), (at, 1.0)):
+                s = a + 0.5 * (b - a) * (x + 1.0)
+                across = 0.8 * cos(phi) + s * rate
+                total += 0.5 * (b - a) * w @ (s * across / np.hypot(across, 0.8 * sin(phi)))
+            return total
+
+        return [brentq(moment, -0.8 * cos(phi) * 1.7, -0.8 * cos(phi) * 0.9, xtol=1e-13)]
+
+    want = solve_ivp(turning, (0, 1), [0.0], rtol=1e-9, atol=1e-11).y[0, -1]
+    assert got["angle"][-1] == pytest.approx(want, abs=3e-4 if rows == 10 else 3e-5)

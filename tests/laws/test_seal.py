@@ -1,10 +1,21 @@
 """The load along a seal, against adaptive quadrature."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from trsim.laws.seal import NODES, PIECES, cuts, least_speed, line_load, node, pressed_part
+from trsim.laws.seal import (
+    NODES,
+    PIECES,
+    cuts,
+    least_speed,
+    line_load,
+    node,
+    panels,
+    pressed_part,
+)
 
 
 @pytest.mark.parametrize("n", [1.0, 1.2, 2.5])
@@ -42,44 +53,68 @@ def test_turned_round_it_is_the_same():
     assert pytest.approx((Q_0, Q_0 - Q_1, E)) == (R_0, R_1, F)
 
 
-def rubbed(at, q, v_0, d, full):
-    """The friction of a line of load q(u) that slides by v_0 + u d, by the pieces of these cuts."""
-    places = [node(at, piece, k) for piece in range(PIECES) for k in range(len(NODES))]
-    v = np.array([v_0 + u * d for u, _ in places])
-    speed = np.maximum(np.linalg.norm(v, axis=1), 1e-300)
-    weights = [weight * q(u) * min(1.0, s / full) / s
-               for (u, weight), s in zip(places, speed, strict=True)]  # fmt: skip
-    return np.array(weights) @ v
+def integrals(at, f):
+    """Of a function of u and of u times it, by the pieces of these cuts."""
+    every = [
+        node(at, piece, panel, k)
+        for piece in range(PIECES)
+        for panel in range(panels(at, piece))
+        for k in range(len(NODES))
+    ]
+    values = np.array([weight * f(u) for u, weight in every])
+    return np.concatenate([values.sum(axis=0), np.array([u for u, _ in every]) @ values])
 
 
 @pytest.mark.parametrize("where", [-0.4, 0.0, 0.3, 0.9, 1.0, 1.7, 300.0, -1e6])
-def test_friction_of_a_line_that_pivots(where):
-    """Sliding is slowest at any place of it, or beside it, and there nearly or quite at rest."""
+@pytest.mark.parametrize("grows", ["all along", "from one end", "from the other"])
+def test_friction_of_a_line_that_pivots(where, grows):
+    """Sliding is slowest at any place of it, or beside it, and there nearly or quite at rest; the
+    load is a power of a compression that may fall to nothing at one end."""
     rng = np.random.default_rng(7)
-    for _ in range(30):
+    for trial in range(25):
         part = tuple(np.sort(rng.uniform(0, 1, 2))) if rng.random() < 0.5 else (0.0, 1.0)
         d = rng.normal(size=3) * 10.0 ** rng.uniform(-3, 2)
         turn = np.linalg.norm(d)
         across = np.cross(d, rng.normal(size=3))
-        least = turn * 10.0 ** rng.uniform(-6, 1) * (rng.random() < 0.8)
+        least = turn * 10.0 ** rng.uniform(-7, 1) * (rng.random() < 0.8)
         v_0 = -where * d + least * across / np.linalg.norm(across)
-        full = turn * 10.0 ** rng.uniform(-3, 1)
-        n = rng.uniform(1, 3)
+        full = turn * 10.0 ** rng.uniform(-6, 1) * (trial % 5 > 0)
+        n, clip = rng.uniform(1, 3), rng.uniform(-0.5, 1.5)
 
-        def q(u, n=n):
-            return (0.3 + u) ** n
+        def q(u, n=n, part=part):
+            x = {"all along": 0.3 + u, "from one end": u - part[0],
+                 "from the other": part[1] - u}[grows]  # fmt: skip
+            return max(x, 0.0) ** n
 
         half = np.sqrt(max(full**2 - least**2, 0.0)) / turn
-        places = [where + x for x in (-half, 0.0, half, -least / turn, least / turn)]
-        places = [x for x in places if part[0] < x < part[1]]
+        places = [where + x for x in (-half, 0.0, half, clip - where)]
+        places += [where + s * 10.0**-k for k in range(9) for s in (-1, 1)]
+        places = sorted({*part, *(x for x in places if part[0] < x < part[1])})
 
-        def of(u, c, v_0=v_0, d=d, full=full):
+        def of(u, v_0=v_0, d=d, full=full, clip=clip, q=q):
             v = v_0 + u * d
-            return q(u) * v[c] / max(np.linalg.norm(v), full)
+            by = v / max(np.linalg.norm(v), full, 1e-300)
+            return q(u) * np.array([*by, max(u - clip, -0.2)])
 
-        want = [quad(of, *part, args=(c,), points=places or None, limit=400)[0] for c in range(3)]
-        found = rubbed(cuts(part, tuple(v_0), tuple(d), full), q, v_0, d, full)
-        assert found == pytest.approx(want, abs=1e-6 * quad(q, *part)[0])
+        ends = (grows == "from one end", grows == "from the other")
+        found = integrals(cuts(part, (tuple(v_0), tuple(d)), full, clip - 0.2, ends), of)
+        want = np.zeros(8)
+        for a, b in pairwise(places):
+            if a < clip - 0.2 < b:
+                want += gauss(of, a, clip - 0.2) + gauss(of, clip - 0.2, b)
+            else:
+                want += gauss(of, a, b)
+        size = quad(q, *part)[0]
+        assert found == pytest.approx(want, abs=2e-6 * size), (trial, part, where, least, full)
+
+
+def gauss(f, a, b):
+    """Integrals of a function of u and of u times it; also next to ends where powers begin."""
+    x, w = np.polynomial.legendre.leggauss(40)
+    s = 0.5 * (x + 1.0)
+    u, weight = a + (b - a) * s**2 * (3 - 2 * s), 0.5 * w * (b - a) * 6.0 * s * (1 - s)
+    values = np.array([f(one) for one in u])
+    return np.concatenate([weight @ values, (weight * u) @ values])
 
 
 def test_the_slowest_place():

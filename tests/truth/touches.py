@@ -229,25 +229,29 @@ def pressed(x0, x1):
 
 
 @compiled
-def slow_part(n, line, x, height, i, j, r, v, w, full):
+def slow_part(n, line, x, height, i, j, r, v, w, full, loss):
     """Between which places along a line it slides slower than that: twice the slowest one where
-    there are none.  Sliding is linear along the line."""
-    first, last = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    there are none; and where damping has its kink.  Both rates are linear along the line."""
+    first, last, rates = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0)
     for k in range(2):
         place = line[0] if k == 0 else plus(line[0], line[1])
         c = minus(place, times(height - x[k], n))
         speed = minus(speed_at(r, v, w, j, c), speed_at(r, v, w, i, c))
         slip = minus(speed, times(dot(n, speed), n))
+        rates = (rates[1], -dot(n, speed))
         if k == 0:
             first = slip
         else:
             last = slip
+    kink = -1e9
+    if loss > 0.0 and rates[0] != rates[1]:
+        kink = (-1.0 / loss - rates[0]) / (rates[1] - rates[0])
     d = minus(last, first)
     A, B, C = dot(d, d), dot(first, d), dot(first, first) - full * full
     if 1e-24 * dot(first, first) > A or A == 0.0:
-        return 1e9, 1e9
+        return 1e9, 1e9, kink
     root = np.sqrt(max(B * B - A * C, 0.0)) / A
-    return -B / A - root, -B / A + root
+    return -B / A - root, -B / A + root, kink
 
 
 @compiled
@@ -261,22 +265,29 @@ def sealed(p, f, i, j, r, v, w, R, Q):
         return damped, rub, whole
     length = np.sqrt(dot(line, line))
     springs = int(p[f, SPRINGS])
-    slowly = slow_part(n, (begin, line), (x0, x1), p[f, HEIGHT], i, j, r, v, w, p[f, FULL])
+    slowly = slow_part(
+        n, (begin, line), (x0, x1), p[f, HEIGHT], i, j, r, v, w, p[f, FULL], p[f, LOSS]
+    )
     early, late = min(max(slowly[0], low), high), min(max(slowly[1], low), high)
     n_e = springs if springs > 0 else 24
-    n_l = springs if springs > 0 else 72
+    n_l = springs if springs > 0 else 144
     for part in range(2):
         for k in range(n_e if part == 0 else n_l):
             if springs > 0:
                 u, weight = (k + 0.5) / springs, 1.0 / springs
-            elif part == 1:  # finer towards where it is slow
-                s = U24[k % 24]
-                if k < 24:
-                    u, weight = early - (early - low) * s**4, (early - low) * 4 * s**3 * W24[k]
-                elif k < 48:
-                    u, weight = early + (late - early) * s, (late - early) * W24[k - 24]
+            elif part == 1:  # finer towards where it is slow; cut where damping has a kink
+                piece, s = k // 24, U24[k % 24]
+                begin = early if piece // 2 == 1 else (low if piece < 2 else late)
+                end = late if piece // 2 == 1 else (early if piece < 2 else high)
+                middle = min(max(slowly[2], begin), end)
+                if piece % 2 == 0:
+                    end = middle
                 else:
-                    u, weight = late + (high - late) * s**4, (high - late) * 4 * s**3 * W24[k - 48]
+                    begin = middle
+                beside = end == early if piece < 2 else begin == late
+                power = 4 if beside and piece // 2 != 1 else 1
+                u, weight = s**power, power * s ** (power - 1) * W24[k % 24] * (end - begin)
+                u = end - u * (end - begin) if piece < 2 else begin + u * (end - begin)
             elif x0 < x1:  # finer towards where the load ends
                 u = low + (high - low) * U24[k] ** 2
                 weight = (high - low) * 2.0 * U24[k] * W24[k]

@@ -4,7 +4,7 @@
     x    = height - h                                       compression, 0 <= u <= 1
     q    = q_0 (x / x_0)^e                                  load per length, N/m, where x > 0
     F_n  = L (integral of q du) n                           on body j, at the centre of pressure
-    F_d  = L sum w q c x' n,   F_t = -L sum w q mu g(|v_t|) v_t / |v_t|
+    F_d = L sum w q max(c x', -1) n,   F_t = -L sum w q mu g(|v_t|) v_t / |v_t|
 
 The elastic load is integrated exactly over the part of the line that is compressed.  It depends on
 the length of that part alone, however the contact breaks into patches.  Damping and friction are
@@ -13,9 +13,10 @@ integrated by Gauss's rule on pieces of that part: sliding changes linearly alon
     v_t(u) = v_0 + u d,    u* = -v_0 . d / |d|^2,    m = |v_t(u*)|
 
 so friction is smooth in z, u = u* + m / |d| sinh z, where it is full, and in u where it is not:
-where a line pivots about one of its points, the pieces are cut there (laws/seal.py).  With
-`springs`, all loads are summed over equal pieces of the line.  Forces act at the projections of the
-points of the line onto the plane, with opposite signs on the two bodies.
+where a line pivots about one of its points, the pieces are cut there (laws/seal.py), and where
+c x' = -1, as a seal that is let go of does not pull.  With `springs`, all loads are summed over
+equal pieces of the line.  Forces act at the projections of the points of the line onto the plane,
+with opposite signs on the two bodies.
 
 Steps end where the slowest point of that part reaches the speed `full_from`; of an integrated seal
 no other corner of friction remains inside them.  Beyond the ends of a branch friction goes on as on
@@ -69,8 +70,8 @@ from trsim.laws.seal import (
     least_speed,
     line_load,
     node,
+    panels,
     pressed_part,
-    whole_of,
 )
 
 MOST = 1000  # springs
@@ -251,26 +252,42 @@ def lump(scene, e, u, weight, branch):
 
 
 @internal
-def place_of(own, cuts, k):
-    """The k-th place of a sum along the line, and its weight."""
+def place_of(own, cuts, piece, k):
+    """The k-th place of a sum along a piece of the line, and its weight."""
     if own.springs > 0:
         return (k + 0.5) / own.springs, 1.0 / own.springs
-    return node(cuts, k // len(NODES), k % len(NODES))
+    return node(cuts, piece, k // len(NODES), k % len(NODES))
 
 
 @internal
-def many(own):
-    """Places of a sum along the line."""
-    return own.springs if own.springs > 0 else PIECES * len(NODES)
+def pieces(own):
+    """Of a sum along the line."""
+    return 1 if own.springs > 0 else PIECES
 
 
 @internal
-def cuts_of(own, part, slides, full):
+def places(own, cuts, piece):
+    """How many there are in a sum along a piece."""
+    return own.springs if own.springs > 0 else panels(cuts, piece) * len(NODES)
+
+
+@internal
+def cuts_of(scene, e, slides, full):
     """Where the pieces of the pressed part end; full: whether all of it is drawn as rubbing
-    fully."""
+    fully.  Damping has a kink where the line is let go of faster than the load follows."""
+    own = Own(scene, e)
+    n, p_j, along, x_0, x_1 = ends(scene, e)
+    low, high = pressed_part(x_0, x_1)
+    clip = low
+    if own.damping > 0.0:
+        _, _, first, _ = meets(scene, e, n, p_j, x_0)
+        _, _, last, _ = meets(scene, e, n, plus(p_j, along), x_1)
+        if first != last:
+            clip = (-1.0 / own.damping - first) / (last - first)
+    v_1 = 0.0 if full or own.friction_law == 0 else own.friction[2]
     if own.friction_law == 0:
-        return whole_of(part)
-    return cuts(part, slides[0], slides[1], 0.0 if full else own.friction[2])
+        slides = (n, (0.0, 0.0, 0.0))
+    return cuts((low, high), slides, v_1, clip, (x_0 <= 0.0, x_1 <= 0.0))
 
 
 @kernel
@@ -296,15 +313,14 @@ def force(t, scene, e):
         push_apart(scene.F, own.i, c_i, own.j, c_j, scaled(own.load * own.length * whole, n))
         if own.damping == 0.0 and own.friction_law == 0:
             return
-    at = cuts_of(own, (low, high), slides, branch[0] > 0.0)
-    for k in range(many(own)):
-        u, weight = place_of(own, at, k)
-        if weight == 0.0:
-            continue
-        c_i, c_j, f, damped, rubbed = lump(scene, e, u, weight, branch)
-        push_apart(scene.F, own.i, c_i, own.j, c_j, f)
-        scene.zd[IMPACTS] += damped
-        scene.zd[FRICTION] += rubbed
+    at = cuts_of(scene, e, slides, branch[0] > 0.0)
+    for piece in range(pieces(own)):
+        for k in range(places(own, at, piece)):
+            u, weight = place_of(own, at, piece, k)
+            c_i, c_j, f, damped, rubbed = lump(scene, e, u, weight, branch)
+            push_apart(scene.F, own.i, c_i, own.j, c_j, f)
+            scene.zd[IMPACTS] += damped
+            scene.zd[FRICTION] += rubbed
 
 
 @kernel
@@ -388,13 +404,12 @@ def measure(t, scene, e, o):
         if own.springs == 0:
             whole, _, _ = line_load(x_0 / own.at, x_1 / own.at, own.exponent)
             total = scaled(own.load * own.length * whole, n)
-        at = cuts_of(own, (low, high), slides, branch[0] > 0.0)
-        for k in range(many(own)):
-            u, weight = place_of(own, at, k)
-            if weight == 0.0:
-                continue
-            _, _, f, _, _ = lump(scene, e, u, weight, branch)
-            total = plus(total, f)
+        at = cuts_of(scene, e, slides, branch[0] > 0.0)
+        for piece in range(pieces(own)):
+            for k in range(places(own, at, piece)):
+                u, weight = place_of(own, at, piece, k)
+                _, _, f, _, _ = lump(scene, e, u, weight, branch)
+                total = plus(total, f)
     f_n = dot(n, total)
     f_t = minus(total, scaled(f_n, n))
     out[o], out[o + 1] = f_n, sqrt(dot(f_t, f_t))

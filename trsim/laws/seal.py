@@ -17,16 +17,19 @@ and the speed m there:
 
 Between the places at which |v| = v_1 the integrand is q times a linear function; beyond them it is
 smooth in z, u = u* + (m / |d|) sinh z, however near to rest the slowest place is.  So the line is
-cut at these places, or at u* where there are none.
+cut at these places, or at u* where there are none, and pieces that are long in z are used in
+panels.
 """
 
 from math import asinh, sinh, sqrt
 
 from trsim.kernels.lazy import internal
 
-NEAREST = 1e-9  # of the line: what m / |d| is at least, so that z stays below 24
+NEAREST = 1e-7  # of the line: what m / |d| is at least: less makes no difference to friction
 FAR = 4.0  # lines: where nothing is at rest nearer than that, the rule in u has all digits
-PIECES, SLOW = 5, 2  # of a line: two halves in z up to its slow part, that part, two halves beyond
+PIECES, SLOW = 6, 1  # of a line: up to its slow part, that part, the rest; each in two, at a kink
+PANEL = 1.5  # of z: what eight places integrate, e^(5 z) too
+CLOSE = 1e-12  # of the line
 ALIKE = 0.2  # of b: less apart than that are nearly the same
 # of Gauss and Legendre, on 0 .. 1
 NODES = (
@@ -83,31 +86,28 @@ def line_load(x_0, x_1, n):
 
 
 @internal
-def whole_of(part):
-    """The cuts of a part that is one piece, plain in u."""
-    low, high = part
-    return low, high, high, high, 0.0, 0.0
-
-
-@internal
-def cuts(part, v_0, d, full):
-    """Where the pieces of a line end: low, a, b, high, then u* and m / |d|, which is 0 where pieces
-    are plain in u.
+def cuts(part, slides, full, clip, ends):
+    """Where the pieces of a line end.
 
     Parameters
     ----------
-    part : (float, float)                where it is pressed, 0 <= u <= 1
-    v_0, d : (float, float, float)       how its beginning slides, and what its end does otherwise
-    full : float                         speed v_1 from which friction is full; 0: everywhere
+    part : (float, float)       where it is pressed, 0 <= u <= 1
+    slides : (tuple, tuple)     how its beginning slides, and how much else its end does, in vectors
+    full : float                speed v_1 from which friction is full; 0: everywhere
+    clip : float                a place at which another law has a kink; any outside of it: none
+    ends : (bool, bool)         whether the load begins from nothing at that end
 
     Returns
     -------
-    (float, float, float, float, float, float)
+    (float, ...)     low, a, b, high: friction grows between a and b; clip; u* and m / |d|, 0 where
+                     pieces are plain in u; 1 for each end from which the load grows, or 0
     """
     low, high = part
+    v_0, d = slides
     dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+    clip, soft, hard = min(max(clip, low), high), 1.0 * ends[0], 1.0 * ends[1]
     if dd == 0.0:
-        return whole_of(part)
+        return low, high, high, high, clip, 0.0, 0.0, soft, hard
     at = -(v_0[0] * d[0] + v_0[1] * d[1] + v_0[2] * d[2]) / dd
     x, y, z = v_0[0] + at * d[0], v_0[1] + at * d[1], v_0[2] + at * d[2]
     mm = x * x + y * y + z * z
@@ -116,22 +116,62 @@ def cuts(part, v_0, d, full):
     near = max(sqrt(mm / dd), NEAREST)
     if near + max(low - at, at - high) > FAR:  # and rounding of u* would be felt
         near = 0.0
-    return low, a, b, high, at, near
+    return low, a, b, high, clip, at, near, soft, hard
 
 
 @internal
-def node(cuts, piece, k):
-    """The k-th place of Gauss's rule on a piece, and its weight."""
-    low, a, b, high, at, near = cuts
-    slow, second = piece == SLOW, piece == 1 or piece == PIECES - 1
-    begin, end = (a, b) if slow else ((low, a) if piece < SLOW else (b, high))
-    if slow or near == 0.0 or begin == end:
-        weight = 0.0 if second else WEIGHTS[k]
-        return begin + (end - begin) * NODES[k], (end - begin) * weight
-    first, last = asinh((begin - at) / near), asinh((end - at) / near)
-    first, last = (0.5 * (first + last), last) if second else (first, 0.5 * (first + last))
-    z = sinh(first + (last - first) * NODES[k])
-    return at + near * z, (last - first) * WEIGHTS[k] * near * sqrt(1.0 + z * z)
+def piece_of(cuts, piece):
+    """The ends of a piece in u, those in z where it is smooth in that, and whether it is."""
+    low, a, b, high, clip, at, near, _, _ = cuts
+    part = piece // 2
+    begin, end = (a, b) if part == SLOW else ((low, a) if part < SLOW else (b, high))
+    middle = min(max(clip, begin), end)
+    begin, end = (begin, middle) if piece % 2 == 0 else (middle, end)
+    if part == SLOW or near == 0.0 or begin == end:
+        return begin, end, False
+    return asinh((begin - at) / near), asinh((end - at) / near), True
+
+
+@internal
+def panels(cuts, piece):
+    """In how many panels Gauss's rule has to be used on a piece: 0 of an empty one."""
+    first, last, curved = piece_of(cuts, piece)
+    if first == last:
+        return 0
+    # of the square root of a distance a panel holds less
+    more = 2 if cuts[7] + cuts[8] > 0.0 else 1
+    return more + int((last - first) / PANEL) if curved else 1
+
+
+@internal
+def node(cuts, piece, panel, k):
+    """The k-th place of Gauss's rule on a panel of a piece, and its weight.
+
+    Next to an end from which a load grows by any power of the distance, places are those of the
+    square root of the distance.
+    """
+    low, _, _, high, _, at, near, soft, hard = cuts
+    first, last, curved = piece_of(cuts, piece)
+    width = last - first
+    if curved:
+        width /= panels(cuts, piece)
+        begin, end = at + near * sinh(first), at + near * sinh(last)
+    else:
+        begin, end = first, last
+    s, weight = NODES[k], WEIGHTS[k]
+    left = panel == 0 and soft > 0.0 and begin <= low + CLOSE
+    right = panel == panels(cuts, piece) - 1 and hard > 0.0 and end >= high - CLOSE
+    if left and right:  # 3 s^2 - 2 s^3
+        s, weight = s * s * (3.0 - 2.0 * s), weight * 6.0 * s * (1.0 - s)
+    elif left:
+        s, weight = s * s, weight * 2.0 * s
+    elif right:
+        s, weight = 1.0 - (1.0 - s) * (1.0 - s), weight * 2.0 * (1.0 - s)
+    place = first + width * (panel + s)
+    if not curved:
+        return place, width * weight
+    z = sinh(place)
+    return at + near * z, width * weight * near * sqrt(1.0 + z * z)
 
 
 @internal

@@ -236,7 +236,7 @@ class Path:
         if there is None or (not within and self.looks.hidden(place, there)):
             return None
         if eq.turning and not turns and self.slides(there):
-            for _ in range(2 if eq.surfaces else 1):
+            for _ in range(2 if eq.surfaces or len(eq.lines) else 1):
                 there = eq.along_itself(there, SEEN * self.end)
         there.came = came_by(eq, place, there)
         return there
@@ -263,7 +263,12 @@ class Path:
         return self.looks.all_slide(place) and self.is_full(place)
 
     def is_full(self, place: Place) -> bool:
-        """Whether friction on all surfaces is that of full sliding."""
+        """Whether friction on all surfaces and seals is that of full sliding.
+
+        On a line that turns directions differ, and their sum is less than that.
+        """
+        if not self.eq.lines_slide(place.y):
+            return False
         if not self.eq.surfaces:
             return True
         out = self.results.out(place, 0.0 * place.v)

@@ -5,6 +5,7 @@ What comes to rest there goes nowhere, and keeps the direction in which it came.
 """
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,28 +33,34 @@ def directed(eq: Equations, place: Place, every: float) -> Place:
     """The start with friction against the way it is going to go."""
     if not eq.directed:
         return place
-    first, h = slice(eq.work.n_q, eq.work.n_q + eq.n), FIRST * every
+    h = FIRST * every
     while True:
         t = place.t + h
         found = eq.solved(t, eq.at_time(place.y, place.t, t), place.lam, None)
         if found is None:  # what touches may roll
             there = eq.at_time(eq.moved(place.y, h * place.v), place.t, t)
             found = eq.solved_sticking(t, there, place.lam, place, 0.0)
-        if found is None:
+        if found is not None:
+            came, far = eq.ways(place.y, found[0])
+            at_start = against(eq, place, came, found) if h >= every or far > MOVED else None
+            if at_start is not None:
+                return at_start
+        if h >= every:
             return place
-        ahead = found[0].copy()
-        came, far = eq.ways(place.y, ahead)
-        ahead[first] = SLOW * came
-        if h >= every or far > MOVED:
-            break
         h *= 10.0
+
+
+def against(eq: Equations, place: Place, came: Array, found: Any) -> Place | None:
+    """A place with friction against the way to another one, where that is found."""
+    first = slice(eq.work.n_q, eq.work.n_q + eq.n)
+    ahead = found[0].copy()
+    ahead[first] = SLOW * came
     y = place.y.copy()
     rolls = max(eq.stuck(ahead).values(), default=0.0) > STUCK / FASTER
     y[first] = ahead[first] * (1.0 if rolls else FASTER)
     with eq.frozen():
         again = eq.solved(place.t, y, found[1], None)
-        at_start = eq.place(place.t, *again) if again is not None else None
-    return at_start or place
+        return eq.place(place.t, *again) if again is not None else None
 
 
 def anchored(

@@ -15,20 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.dense import least_squares, length
-from trsim.assemble.equations import largest_wrench, poses
+from trsim.assemble.equations import corners, largest_wrench, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
 from trsim.elements.contract import (
+    BRANCH,
     CONTACT,
     FIRST_ROW,
     FLIGHT,
     IMPACT_SPEED,
     PHASE,
+    WHOLE,
     Memory,
 )
 from trsim.elements.prescribed import AnyDrive, rates_along, write_rates
 from trsim.elements.scene import Scene, scene
-from trsim.laws.friction import CODES
+from trsim.laws.friction import CODES, FULL
 from trsim.solve.diagnose.linearised import mass_matrix
 from trsim.solve.path.balance import BY_PLACE, ROOM, SLOW, Balance, system, unbalanced
 from trsim.solve.path.newton import (
@@ -53,7 +55,8 @@ STEP = 1e-7  # of the mechanism's size, rad: differences
 IN_GAP = 1e-4  # and of a clearance
 KEPT = 3  # ways from place to place
 ALONE = 1e-10  # relative size of a row that is not independent
-SURFACES = ("surface", "edge")  # travel of what is touched in any direction
+SURFACE, LINE = "surface", "edge"  # travel of what is touched in any direction
+NONE = CODES["none"]
 KINETIC = 1  # of the bristles of a law that sticks: which number is the coefficient of sliding
 
 
@@ -96,14 +99,22 @@ def sliding(mechanism: Mechanism) -> Any:
     return model.replaced(con=con, par=par, shared_out=0, plain=0), found
 
 
+def rough_lines(mechanism: Mechanism, w: Scene) -> list[int]:
+    """Seals that rub: their rows."""
+    return [
+        e for e, i in enumerate(mechanism.instances)
+        if i.row.travel == LINE and i.element.slides and w.con[e, i.element.slides[0]] != NONE
+    ]  # fmt: skip
+
+
 def rough_surfaces(mechanism: Mechanism, w: Scene) -> list[tuple[float, int, int]]:
-    """Surfaces and seals that rub, in any direction: coefficient, columns of load and friction."""
+    """Surfaces that rub, in any direction: coefficient, columns of load and friction."""
     columns = {c.name: c.start for c in mechanism.columns}
     found = []
     for e, instance in enumerate(mechanism.instances):
-        if instance.row.travel in SURFACES and instance.element.slides:
+        if instance.row.travel == SURFACE and instance.element.slides:
             law, first = instance.element.slides
-            if w.con[e, law] != CODES["none"] and f"{instance.name}.friction_force" in columns:
+            if w.con[e, law] != NONE and f"{instance.name}.friction_force" in columns:
                 load, rub = (f"{instance.name}.{word}_force" for word in ("normal", "friction"))
                 found.append((float(w.par[e, first]), columns[load], columns[rub]))
     return found
@@ -133,7 +144,8 @@ class Equations:
         self.surfaces = rough_surfaces(mechanism, w)
         self.sleeves = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
         self.touching = Touching(mechanism, w)
-        self.turning = self.sleeves or (w.d == 6 and len(self.surfaces) > 0)
+        self.lines = np.array(rough_lines(mechanism, w), np.int64)
+        self.turning = self.sleeves or (w.d == 6 and len(self.surfaces) + len(self.lines) > 0)
         # ways that were asked for last, which are asked for again
         self.known: deque[tuple[Array, Array, Array, float]] = deque(maxlen=KEPT)
         poses(w, begun.y)
@@ -279,6 +291,18 @@ class Equations:
         poses(self.work, y)
         full = SLOW * RAMP * self.work.size
         return {e: length(v) / full for e, v in self.touching.slips() if length(v) < full}
+
+    def lines_slide(self, y: Array) -> bool:
+        """Whether seals rub in full all along at the velocities of y."""
+        if not len(self.lines):
+            return True
+        w, at = self.work, self.lines
+        poses(w, y)
+        before = w.mem[at, BRANCH].copy()
+        w.mem[at, BRANCH], w.corner[at, 1] = WHOLE, FULL
+        corners(w, 0.0)
+        w.mem[at, BRANCH] = before
+        return bool(np.all(w.corner[at, 1] == FULL))
 
     def sliding(self, place: Place) -> list[tuple[int, Array]]:
         """Sliding velocities of what touches, along the path."""
