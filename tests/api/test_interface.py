@@ -390,6 +390,7 @@ def test_result_of_no_result(here):
     [
         (lambda run: trsim.Result(None), "is the name of its file, not nothing"),
         (lambda run: trsim.Result(7), "is the name of its file, not 7"),
+        (lambda run: trsim.Sweep(None), "is the name of its folder, not nothing"),
         (lambda run: run[None], "name of a channel is a word, not nothing"),
         (lambda run: run.channel(3), "name of a channel is a word, not 3"),
         (lambda run: run.frame(None), "name of a channel is a word, not nothing"),

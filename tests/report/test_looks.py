@@ -41,7 +41,7 @@ def test_units_of_an_option():
     for text, what in (("speed", "no units"), ("sped: rpm", "unknown key 'sped'"),
                        ("a:", "no units"), ("speed:", "no units"), ("velocity: m/s", "'velocity'"),
                        ("speed: N", "no unit of speed"), ("speed: rmp", "unknown unit"),
-                       ("angle: deg, angle: rad", "asked for twice")):  # fmt: skip
+                       ("angle: deg, angle: rad", "two units for what is in rad")):  # fmt: skip
         with pytest.raises(UsageError, match=what):
             chosen((text,))
 

@@ -88,6 +88,7 @@ def test_the_rate_of_a_channel_at_the_end_of_a_step_however_late(monkeypatch):
     monkeypatch.setattr(sections, "evaluate_to_measure", lambda *_: None)
     monkeypatch.setattr(sections, "crosses_after", sections.crosses_after.python)
     monkeypatch.setattr(sections, "all_alone", sections.all_alone.python)
+    monkeypatch.setattr(sections, "ahead_of", sections.ahead_of.python)
     sections.ends_known.python(s, r, b, 1, 0)
     assert r.section[0, sections.END_RATE] == pytest.approx(12.0, rel=1e-4)
 

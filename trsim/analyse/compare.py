@@ -93,8 +93,11 @@ def difference(
     low, high = max(first.s[0], other.s[0]), min(first.s[-1], other.s[-1])
     inside = (first.s >= low) & (first.s <= high)
     s, x = first.s[inside], first.x[inside]
-    if s.size < 2:
+    if high <= low:
         raise UsageError(f"{channel}: the curves have no stretch in common", "")
+    if s.size < 2:
+        what = f"{channel}: the first curve has fewer than two rows in the stretch they share"
+        raise UsageError(what, "Give it more rows, or compare the other way round.")
     y = np.interp(s, other.s, other.x)
     off, size = y - x, float(np.ptp(x))
     last = int(np.searchsorted(s, apart)) if apart <= s[-1] else s.size

@@ -75,7 +75,7 @@ def _of_magnitude(run: Run, word: str, vector: str) -> str:
         return MAGNITUDE
     raise UsageError(
         f"{run.path}: the {word} magnitude of '{vector}' is not kept in a run",
-        f"Ask for a component, '{vector}.x'; rms:|{vector}| is that of the rows.",
+        f"Ask for a component, '{vector}.x'; `trsim export` writes the rows.",
     )
 
 

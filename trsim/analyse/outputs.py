@@ -87,6 +87,20 @@ def _no_kind(word: str, name: str, kind: str, run: Run | None) -> UsageError:
     return UsageError(f"no number of a run: {described(word)}", hint)
 
 
+def pressed(run: Run, word: str) -> str:
+    """What to say of a reaction of 0 that a word asks for, of a pin with play.
+
+    In a plane nothing but its contact holds it: its rows, and so its reaction, are out of it.
+    """
+    name = parted(word)[0].partition(":")[2].strip("|")
+    joint, dot, channel = name.partition(".")
+    other = f"{joint}.contact_force"
+    asked = dot and channel.split(".")[0] in ("reaction", "reaction_moment")
+    if not asked or other not in run.names:
+        return ""
+    return f"{word}: {other} is the force in that pin, which has play"
+
+
 def in_units(word: str, number: Number, units: tuple[str, ...]) -> Number:
     """A number in the one of some units that is of its kind; as it is where none is given.
 

@@ -1,12 +1,13 @@
 """`Result`: a result file as Python reads it: channels, events, peaks, numbers, figures."""
 
 import os
+import warnings
 from collections.abc import Mapping
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trsim.errors import UsageError, described, known
+from trsim.errors import TrsimWarning, UsageError, described, known
 
 if TYPE_CHECKING:
     import pandas
@@ -178,9 +179,11 @@ class Result:
 
         unit  of it; SI where none is said.  Raises UsageError.
         """
-        from trsim.analyse.outputs import scalar
+        from trsim.analyse.outputs import pressed, scalar
 
         value, si = scalar(self.run, word)
+        if value == 0.0 and (text := pressed(self.run, word)):
+            warnings.warn(text, TrsimWarning, stacklevel=2)
         return value * factor(si, unit)
 
     # --- figures ---------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trsim.api.result import Result, factor
-from trsim.errors import FileError, UsageError, known
+from trsim.errors import FileError, UsageError, described, known
 from trsim.sweeps.study import Case, study
 
 if TYPE_CHECKING:
@@ -24,7 +24,10 @@ class Sweep:
     """
 
     def __init__(self, folder: str | os.PathLike) -> None:
-        """Raises FileError where there is no sweep that can be read."""
+        """Raises FileError where there is no sweep that can be read; UsageError."""
+        if not isinstance(folder, str | os.PathLike):
+            what = f"a sweep is the name of its folder, not {described(folder)}"
+            raise UsageError(what, 'Write for example trsim.Sweep("runs/clearance").')
         self.folder = Path(folder)
         self.study: Study = study(self.folder)
         self.cases: tuple[Case, ...] = self.study.cases

@@ -74,7 +74,7 @@ def command(
 
 def numbers(answer: Answer, run: Any, words: tuple[str, ...], units: tuple[str, ...]) -> None:
     """Print the numbers of some words, in full."""
-    from trsim.analyse.outputs import in_units, scalar
+    from trsim.analyse.outputs import in_units, pressed, scalar
 
     in_si = [scalar(run, word) for word in words]
     found = [in_units(word, number, units) for word, number in zip(words, in_si, strict=True)]
@@ -86,25 +86,11 @@ def numbers(answer: Answer, run: Any, words: tuple[str, ...], units: tuple[str, 
         if isnan(value):
             answer.warn(str(run.path), f"{word}: it has nothing to make it of")
         if value == 0.0 and (other := pressed(run, word)):
-            answer.warn(str(run.path), f"{word}: {other} is the force in that pin, which has play")
+            answer.warn(str(run.path), other)
         text = repr(int(value)) if value.is_integer() and unit == "-" else repr(value)
         # of a conversion the last digit is its rounding: 59.99999999999999 deg
         text = text if unit == si else f"{value:.15g}"
         answer.put(text if units or unit == "-" else f"{text} {unit}")
-
-
-def pressed(run: Any, word: str) -> str:
-    """The channel of what a pin with play carries, where a word asks for its reaction.
-
-    In a plane nothing but that contact holds it: its rows, and so its reaction, are out of it.
-    """
-    from trsim.analyse.window import parted
-
-    name = parted(word)[0].partition(":")[2].strip("|")
-    joint, dot, channel = name.partition(".")
-    other = f"{joint}.contact_force"
-    asked = dot and channel.split(".")[0] == "reaction"
-    return other if asked and other in run.names else ""
 
 
 def check_same(run: Any) -> None:

@@ -1,7 +1,7 @@
 """Figures and tables of result files; the only place that imports matplotlib."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -185,8 +185,13 @@ def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
 def made(folder: str | PathLike) -> Iterator[Path]:
     """A folder to write to; errors of the file system are told of it."""
     folder = Path(folder)
+    new = not folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         yield folder
     except OSError as error:
         raise FileError(f"{folder}: {error.strerror or error}") from None
+    finally:
+        if new:  # unless there is something in it
+            with suppress(OSError):
+                folder.rmdir()

@@ -3,6 +3,7 @@
 --units "angle: deg, speed: rpm"      --format svg      --size 120x80      --style slides
 """
 
+import re
 from typing import NamedTuple
 
 from trsim.errors import ScenarioError, UsageError, described
@@ -31,7 +32,7 @@ class Looks(NamedTuple):
 def chosen(texts: tuple[str, ...]) -> dict[str, tuple[float, str]]:
     """SI unit -> factor and the unit to show in its place.  Raises UsageError."""
     found: dict[str, tuple[float, str]] = {}
-    for pair in (one.strip() for text in texts for one in text.strip(" {}").split(",")):
+    for pair in (one.strip() for text in texts for one in re.split("[,;]", text.strip(" {}"))):
         key, colon, name = (part.strip() for part in pair.partition(":"))
         if not colon or not name:
             hint = UNITS
@@ -43,7 +44,8 @@ def chosen(texts: tuple[str, ...]) -> dict[str, tuple[float, str]]:
         except ScenarioError as error:
             raise UsageError(error.what, error.hint or UNITS) from None
         if si in found:
-            raise UsageError(f"a unit in place of {si} is asked for twice", "Once is enough.")
+            what = f"two units for what is in {si}: '{found[si][1]}' and '{name}'"
+            raise UsageError(what, "Name one of them.")
         found[si] = 1.0 / float(unit(name)[0]), name
     return found
 

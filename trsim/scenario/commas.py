@@ -2,10 +2,14 @@
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
+from trsim.errors import Place
+
 LIST = re.compile(r"\[[^][{}#'\"]*\]")
-CLOSE = re.compile(r"(?<![\w.])([-+]?[0-9]+),([0-9]+)(?![\w.])")  # a comma alone between two
+# a comma alone between two numbers, the second with a unit or without
+CLOSE = re.compile(r"(?<![\w.])([-+]?[0-9]+),([0-9]+)(?=\s*[\],]|\s*[^\W\d_])")
 APART = re.compile(r",\s")
 
 
@@ -20,14 +24,31 @@ def commas(scenario: Any) -> Iterator[str]:
         written = place and LIST.match(place.excerpt, place.column - 1)
         if not written:
             continue
-        for found in CLOSE.finditer(written[0]):
-            if APART.search(written[0]) or found[1] == "-0":
-                count = written[0].count(",") + 1
-                yield (
-                    f"{'.'.join(map(str, path))}: {written[0]} is a list of {count} numbers; if "
-                    f"{found[0]} is one of them, write {found[1]}.{found[2]}"
-                )
-                break
+        if found := comma(written[0]):
+            count = written[0].count(",") + 1
+            yield (
+                f"{'.'.join(map(str, path))}: {written[0]} is a list of {count} numbers; if "
+                f"{found[0]} is one of them, write {found[1]}.{found[2]}"
+            )
+
+
+def comma(text: str) -> re.Match[str] | None:
+    """What may be a decimal comma in a list as it is written."""
+    return next(
+        (found for found in CLOSE.finditer(text) if APART.search(text) or found[1] == "-0"), None
+    )
+
+
+def in_a_list(place: Place | None) -> str:
+    """The hint for a list that is too long, where a decimal comma may be why."""
+    written = place and LIST.match(place.excerpt, place.column - 1)
+    found = written and comma(written[0])
+    return f"If {found[0]} is one number, write {found[1]}.{found[2]}." if found else ""
+
+
+def _begins(value: Any) -> bool:
+    """Whether a value is written with a whole number first: 5, 5 mm."""
+    return isinstance(value, int) or (isinstance(value, str) and value[:1].isdigit())
 
 
 def _whole(data: Any, path: tuple[str | int, ...]) -> Iterator[tuple[str | int, ...]]:
@@ -37,8 +58,7 @@ def _whole(data: Any, path: tuple[str | int, ...]) -> Iterator[tuple[str | int, 
             if isinstance(value, dict | list):
                 yield from _whole(value, (*path, key))
     elif isinstance(data, list):
-        whole = [isinstance(value, int) for value in data]
-        if any(map(min, whole, whole[1:])):
+        if any(isinstance(a, int) and _begins(b) for a, b in pairwise(data)):
             yield path
         for k, value in enumerate(data):
             if isinstance(value, dict | list):

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from trsim.errors import Problems, ScenarioError, TrsimError, closest, described
 from trsim.fields import Spec, SpecError, Unit
 from trsim.scenario import expand
+from trsim.scenario.commas import in_a_list
 from trsim.scenario.limits import sizes
 from trsim.scenario.memory import Memory
 from trsim.scenario.names import name_faults, sweep_faults
@@ -90,6 +91,8 @@ def of_tree(tree: Tree, text: str, memory: Memory | None = None) -> Scenario:
         problems += _unfolded(error, (), whole)
     for problem in problems:
         problem.place = problem.place or whole.place(problem.path)
+        if "got a list of" in problem.what and (comma := in_a_list(problem.place)):
+            problem.hint = f"{comma}  {problem.hint}".rstrip()
     if problems:
         files = list(tree.files)
         problems = sorted(whole.once(problems), key=lambda problem: _order(problem, files))

@@ -39,7 +39,7 @@ def report(given: dict[str, Any]) -> dict[str, Any]:
         what = f"must be a mapping, got {described(chosen)}"
         raise ScenarioError(what, "For example `{angle: deg, length: mm}`.", ("units",))
     for key, text in chosen.items():
-        if key not in MEANT:
+        if str(key).casefold() not in MEANT:
             check_keys([key], UNITS, "units")
         if not isinstance(text, str):
             what = f"must be a unit, got {described(text)}"
@@ -56,8 +56,9 @@ def replaced(key: str, text: str) -> str:
 
     Raises ScenarioError for what is no unit of that kind.
     """
-    if key in MEANT:
-        raise ScenarioError(f"unknown key {described(key)}", known(key, UNITS, MEANT[key]))
+    plain = str(key).casefold().replace("velocities", "velocity")
+    if plain in MEANT and key not in UNITS:
+        raise ScenarioError(f"unknown key {described(key)}", known(key, UNITS, MEANT[plain]))
     check_keys([key], UNITS)
     dimension = unit(text)[1]
     for si in UNITS[key]:

@@ -208,10 +208,13 @@ NUMBERS = {
     "contact": ("JOINT", "the share of the time in which a pin with play is in contact"),
     "following": (
         "JOINT",
-        "the share of the time in which it stays in contact and is pressed on"
-        " again: contacts with several maxima",
+        "the share of the time in which a pin with play stays in contact and is pressed on again "
+        "and again",
     ),
-    "impacts": ("JOINT", "the number of touches with one maximum of the penetration"),
+    "impacts": (
+        "JOINT",
+        "the number of touches that rebound after one blow: the depth rises and falls once",
+    ),
     "onsets": ("JOINT", "the number of touches"),
     "between": ("JOINT", "the mean time from one touch to the next, s"),
     "summary": ("KEY", "a number of the summary of the run: summary:contacts.B.peak_force"),

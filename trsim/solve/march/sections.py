@@ -215,15 +215,17 @@ def ends_known(s, r, b, last, event):
                 r.section[k, LAST] = first
     ahead = AHEAD * (t1 - t)
     if begun and asked:
-        rates_by_places(s, r.y, r.yd, ahead, b.y2)
+        ahead_of(r.y, r.yd, ahead, b.y2)
+        set_poses(s, b.y2)
         for k in range(s.section.shape[0]):
             if s.section[k, KIND] == CROSSING and r.section[k, KNOWN] == VALUE:
                 call_one(s, s.measure, t + ahead, s.section[k, ALONE])
                 change = s.out[s.section[k, WHEN]] - r.section[k, LAST]
                 r.section[k, RATE] = change / ahead
     if asked:
-        rates_by_places(s, b.y1, b.K[last], ahead, b.y2)
+        ahead_of(b.y1, b.K[last], ahead, b.y2)
         if all_alone(s):
+            set_poses(s, b.y2)
             for k in range(s.section.shape[0]):
                 if s.section[k, KIND] == CROSSING:
                     call_one(s, s.measure, t1 + ahead, s.section[k, ALONE])
@@ -237,11 +239,10 @@ def ends_known(s, r, b, last, event):
 
 
 @internal
-def rates_by_places(s, y, yd, ahead, out):
-    """Set the poses a little ahead of a state, out <- y + ahead y'."""
+def ahead_of(y, yd, ahead, out):
+    """out <- y + ahead y'."""
     for c in range(out.size):
         out[c] = y[c] + ahead * yd[c]
-    set_poses(s, out)
 
 
 @internal

@@ -45,6 +45,10 @@ def directed(eq: Equations, place: Place, every: float) -> Place:
             at_start = against(eq, place, came, found) if h >= every or far > MOVED else None
             if at_start is not None:
                 return at_start
+            if far > MOVED and not eq.only_lines:  # it sticks
+                return place
+        elif not eq.only_lines:
+            return place
         if h >= every:
             return place
         h *= 10.0

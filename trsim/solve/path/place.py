@@ -145,6 +145,8 @@ class Equations:
         self.sleeves = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
         self.touching = Touching(mechanism, w)
         self.lines = np.array(rough_lines(mechanism, w), np.int64)
+        # nothing else rubs, which might stick
+        self.only_lines = len(self.lines) > 0 and not self.surfaces and not len(w.rubbing)
         self.turning = self.sleeves or (w.d == 6 and len(self.surfaces) + len(self.lines) > 0)
         # ways that were asked for last, which are asked for again
         self.known: deque[tuple[Array, Array, Array, float]] = deque(maxlen=KEPT)
