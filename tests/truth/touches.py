@@ -277,17 +277,17 @@ def sealed(p, f, i, j, r, v, w, R, Q):
                 u, weight = (k + 0.5) / springs, 1.0 / springs
             elif part == 1:  # finer towards where it is slow; cut where damping has a kink
                 piece, s = k // 24, U24[k % 24]
-                begin = early if piece // 2 == 1 else (low if piece < 2 else late)
-                end = late if piece // 2 == 1 else (early if piece < 2 else high)
-                middle = min(max(slowly[2], begin), end)
+                lo = early if piece // 2 == 1 else (low if piece < 2 else late)
+                hi = late if piece // 2 == 1 else (early if piece < 2 else high)
+                middle = min(max(slowly[2], lo), hi)
                 if piece % 2 == 0:
-                    end = middle
+                    hi = middle
                 else:
-                    begin = middle
-                beside = end == early if piece < 2 else begin == late
+                    lo = middle
+                beside = hi == early if piece < 2 else lo == late
                 power = 4 if beside and piece // 2 != 1 else 1
-                u, weight = s**power, power * s ** (power - 1) * W24[k % 24] * (end - begin)
-                u = end - u * (end - begin) if piece < 2 else begin + u * (end - begin)
+                weight = power * s ** (power - 1) * W24[k % 24] * (hi - lo)
+                u = hi - s**power * (hi - lo) if piece < 2 else lo + s**power * (hi - lo)
             elif x0 < x1:  # finer towards where the load ends
                 u = low + (high - low) * U24[k] ** 2
                 weight = (high - low) * 2.0 * U24[k] * W24[k]

@@ -95,7 +95,7 @@ def pressed(run: Run, word: str) -> str:
     name = parted(word)[0].partition(":")[2].strip("|")
     joint, dot, channel = name.partition(".")
     other = f"{joint}.contact_force"
-    asked = dot and channel.split(".")[0] in ("reaction", "reaction_moment")
+    asked = dot and channel.startswith("react")  # the force or the moment
     if not asked or other not in run.names:
         return ""
     return f"{word}: {other} is the force in that pin, which has play"

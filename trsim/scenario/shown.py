@@ -24,7 +24,7 @@ UNITS: dict[str, tuple[str, ...]] = {
 # other words for these kinds, and the one that is meant
 MEANT = {
     "velocity": "speed", "rate": "speed", "angular_velocity": "angular_speed", "rpm": "speed",
-    "moment": "torque", "work": "energy", "distance": "length", "displacement": "length",
+    "moment": "torque", "work": "energy", "distance": "length", "way": "length",
     "position": "length", "stroke": "length", "rotation": "angle", "load": "force",
 }  # fmt: skip
 

@@ -134,7 +134,10 @@ def between(line: str) -> str:
         return "Columns are separated by commas."
     mark = "semicolons" if ";" in line else "tabs"
     decimal = " and decimal commas" * bool(re.search(r"[0-9],[0-9]", line))
-    return f"It has {mark}{decimal}: save it with commas between columns and decimal points."
+    return (
+        f"Columns are separated by commas, and this has {mark}{decimal}: save it with commas and "
+        "decimal points."
+    )
 
 
 def _wrong(table: Table, line: Line, what: str, hint: str) -> ScenarioError:
